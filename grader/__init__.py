@@ -14,14 +14,14 @@ named before it in LAYERS:
 - `kernels`: Jupyter kernels inside of sandboxes: started or forked, spoken to, and how each one
   ended.
 - `workers`: Processes that grade, on this machine or on a Dask cluster, and how many at a time.
-- `autograde`: What `nbgrader autograde` runs of ours, in place of its own reading and execution.
+- `autograde`: What `nbgrader autograde` calls of this package, instead of its own preprocessors.
 - `storage`: What is kept: nbgrader's database, submissions, due dates, late penalties, earlier
   results.
 - `export`: What leaves the gradebook as files: scores, totals, sample solutions.
 - `report`: What people read: feedback for students; progress, run report and formgrader for
   teachers.
 - `passback`: Scores and feedback in the forms that course platforms import.
-- `serving`: The resident process: what is handed in is graded, and its feedback released, at once.
+- `serving`: The resident process that grades each submission as it arrives, and releases feedback.
 - `common`: What every part uses: errors, files, text, names of students, dates, a process that
   parses.
 """

@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
 
 def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) -> int:
-    """Run one command; return its exit status: 0, 1 when something needs a look, 130 on Ctrl-C.
+    """Run one command; return its exit status: 0, 1 if something needs attention, 130 on Ctrl-C.
 
     It is 143 on SIGTERM and 129 on SIGHUP, which end a run in the same way.
     """
     asked = make_parser().parse_args(arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # through a pipe, to `tee` perhaps, each line has to come when it is printed
+        # stdout may be a pipe, for example to `tee`: each line has to appear when it is printed
         sys.stdout.reconfigure(line_buffering=True)
     with stoppable() as stop:
         try:
-            # arguments are known to be right: only now what takes long to import
+            # the arguments are valid: only now import what takes long
             if begin := getattr(asked, 'begin', None):
                 begin(asked)
             from grader.common.lean_imports import leave_out_formats, leave_out_servers
@@ -57,7 +57,7 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
 
 
 def _refuse_no_folder(course: 'Course') -> None:
-    """Raise CourseError where something else lies in the gradebook's place."""
+    """Raise CourseError if the gradebook's path exists and is not a folder."""
     gradebook = course.gradebook
     if os.path.lexists(gradebook) and not gradebook.is_dir():
         what = 'a file' if gradebook.exists() else 'a link that leads nowhere'
@@ -70,7 +70,7 @@ def _refuse_no_folder(course: 'Course') -> None:
 def run() -> NoReturn:
     """Run the command that this process was started for, and end it."""
     status = main()
-    gc.freeze()  # or Python looks through all of it for garbage before it ends
+    gc.freeze()  # or Python searches all objects for garbage before it exits
     sys.exit(status)
 
 

@@ -1,4 +1,4 @@
-"""Where a course keeps its things: lessons, releases, the gradebook and its secret."""
+"""Where a course keeps its files: lessons, releases, the gradebook and its secret."""
 
 import contextlib
 import hashlib
@@ -13,7 +13,7 @@ from pathlib import Path
 from my_robot_basics.validate.packages import BUILD, packages_of
 from nbformat import NotebookNode
 
-from grader.common.checkout import ROOT as ROOT  # asked for here, as all of a course
+from grader.common.checkout import ROOT as ROOT  # other modules import it from here
 from grader.common.db_url import configured_db_url, gradebook_of
 from grader.common.errors import CourseError
 from grader.notebook.lesson_text import read_lesson
@@ -22,25 +22,25 @@ from grader.notebook.restore import AssignmentTemplate, make_template
 
 @dataclass(frozen=True)
 class Course:
-    """The folders of one course; a temporary gradebook may stand beside the real lessons."""
+    """The folders of one course; a temporary gradebook may be used with the real lessons."""
 
     root: Path = ROOT
-    """What lies in the course's own place: solutions/, notebooks/, nbgrader_config.py."""
+    """The folder that contains solutions/, notebooks/ and nbgrader_config.py."""
     gradebook: Path = ROOT / 'gradebook'
     """Submissions, scores and feedback; made by the grader, never in git."""
 
     @classmethod
     def at(cls, root: Path) -> 'Course':
-        """Return the course whose folders all lie in `root`."""
+        """Return the course whose folders are all in `root`."""
         root = Path(root).resolve()
         return cls(root=root, gradebook=root / 'gradebook')
 
     @classmethod
     def of_nbgrader(cls, resources: dict) -> 'Course':
-        """Return the course of which nbgrader converts a notebook: it runs in the course's root.
+        """Return the course whose notebook nbgrader converts: nbgrader runs in the course's root.
 
-        The gradebook lies where the database does that it has been told to use; our own passes say
-        where it lies.
+        The gradebook is beside the database that nbgrader was told to use; our own preprocessors
+        name its folder in `resources`.
         """
         at = resources['nbgrader']
         gradebook = at.get('gradebook') or gradebook_of(at['db_url'], Path.cwd())
@@ -48,15 +48,15 @@ class Course:
 
     @property
     def db_url(self) -> str:
-        """The database's address; a writer waits up to 60 s for another one.
+        """The database's URL; with SQLite, a writer waits up to 60 s for another writer.
 
-        It may have a password. Raises CourseError where gradebook/database.toml gives none.
+        The URL may contain a password. Raises CourseError if gradebook/database.toml has no URL.
         """
         return configured_db_url(self.gradebook) or f'sqlite:///{self.database}?timeout=60'
 
     @property
     def database(self) -> Path:
-        """The file that holds lessons and scores, unless they are in PostgreSQL."""
+        """The SQLite file of lessons and scores; not used if they are in PostgreSQL."""
         return self.gradebook / 'gradebook.db'
 
     def folder(self, step: str, student_id: str, assignment: str) -> Path:
@@ -64,11 +64,11 @@ class Course:
         return self.gradebook / step / student_id / assignment
 
     def source_path(self, assignment: str) -> Path:
-        """Return where the instructor's notebook lies, answers and hidden tests included."""
+        """Return the path of the instructor's notebook, with answers and hidden tests."""
         return self.root / 'solutions' / assignment / f'{assignment}.ipynb'
 
     def release_path(self, assignment: str) -> Path:
-        """Return where the students' notebook lies."""
+        """Return the path of the students' notebook."""
         return self.root / 'notebooks' / assignment / f'{assignment}.ipynb'
 
     def assignments(self) -> list[str]:
@@ -77,7 +77,7 @@ class Course:
         return sorted(path.stem for path in found if path.stem == path.parent.name)
 
     def source(self, assignment: str) -> NotebookNode:
-        """Read the instructor's notebook. Raises CourseError when there is none."""
+        """Read the instructor's notebook. Raises CourseError if there is none."""
         return _read(
             self.source_path(assignment),
             self.gradebook,
@@ -86,7 +86,7 @@ class Course:
         )
 
     def release(self, assignment: str) -> NotebookNode:
-        """Read the students' notebook. Raises CourseError when it was not released yet."""
+        """Read the students' notebook. Raises CourseError if it was not released yet."""
         way_out = f'run ./course release {assignment}'
         return _read(
             self.release_path(assignment),
@@ -100,17 +100,17 @@ class Course:
         return make_template(self.source(assignment), self.release(assignment))
 
     def packages(self, assignment: str) -> tuple[str, ...]:
-        """Return the ROS packages that are handed in with an assignment: its locked cells say.
+        """Return the ROS packages handed in with an assignment, as its locked cells list them.
 
-        Raises CourseError when there is no such assignment.
+        Raises CourseError if there is no such assignment.
         """
         with contextlib.suppress(OSError, UnicodeDecodeError):
             if BUILD not in self.source_path(assignment).read_text(encoding='utf-8'):
-                return ()  # most lessons ask for none, and need not be parsed
+                return ()  # most lessons ask for no package, and need not be parsed
         return packages_of(self.source(assignment))
 
     def is_in_package(self, path: Path) -> bool:
-        """Whether a path in solutions/ or notebooks/ leads into a package beside a lesson."""
+        """Whether a path in solutions/ or notebooks/ leads into a lesson's ROS package."""
         known = self.assignments()
         above = zip(path.parts, path.parts[1:-1], strict=False)
         return any(lesson in known and name in self.packages(lesson) for lesson, name in above)
@@ -118,25 +118,25 @@ class Course:
     def seed(self, assignment: str, student_id: str) -> str:
         """Return the hexadecimal seed of the inputs that an assignment's hidden tests choose.
 
-        It is a student's own, the same at each hand-in and each re-grading, and another one once
-        the lesson's text changes; nobody without the course's secret can tell it. Raises
-        CourseError where that secret is damaged.
+        Each student has a seed of their own. It stays the same when the student hands in or is
+        graded again, and changes when the lesson's text changes. To compute it, one needs the
+        course's secret. Raises CourseError if that secret is damaged.
         """
         return self.seeds(assignment)(student_id)
 
     def seeds(self, assignment: str) -> Callable[[str], str]:
-        """Return what gives each student's seed of an assignment: the lesson is read only once."""
+        """Return a function from student ID to seed: the lesson is read only once."""
         version, secret = self.version(assignment), self._secret()
 
         def seed(student_id: str) -> str:
-            # as JSON: no name can then be taken for a part of another one
+            # as JSON: the end of one part can't be read as the beginning of the next
             text = json.dumps([assignment, version, student_id])
             return hmac.new(secret, text.encode('ascii'), hashlib.sha256).hexdigest()
 
         return seed
 
     def version(self, assignment: str) -> str:
-        """Return a hash of what the lesson says: outputs and layout don't count."""
+        """Return a hash of the lesson's cells; outputs and layout don't count."""
         cells = [
             (cell.cell_type, cell.source, cell.metadata.get('nbgrader', {}))
             for cell in self.source(assignment).cells
@@ -151,7 +151,7 @@ class Course:
             try:
                 fresh.touch(mode=0o600)
                 fresh.write_text(secrets.token_hex(32), encoding='ascii')
-                # whole or not at all, and one only where two begin at once
+                # complete or not at all; of two processes that begin at once, one creates it
                 with contextlib.suppress(FileExistsError):
                     os.link(fresh, path)
             finally:
@@ -160,7 +160,7 @@ class Course:
             secret = bytes.fromhex(path.read_text(encoding='ascii'))
         except ValueError:
             secret = b''
-        if not secret:  # with an empty one, anybody could tell the seeds
+        if not secret:  # with an empty secret, anybody could compute the seeds
             raise CourseError(
                 f'{path} is damaged: expected hexadecimal digits. Restore it from a backup; a '
                 'new secret, which is made where there is no such file, gives hidden tests other '
@@ -169,7 +169,7 @@ class Course:
         return secret
 
     def expect_assignment(self, name: str) -> None:
-        """Raise CourseError where there is no assignment of that name."""
+        """Raise CourseError if there is no assignment of that name."""
         if name not in self.assignments():
             raise CourseError(self._unknown(name))
 

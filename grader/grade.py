@@ -1,4 +1,4 @@
-"""The whole flow: read a submission, restore it, run and judge it, store what came of it."""
+"""The whole flow: read a submission, restore it, run and judge it, store the result."""
 
 from collections.abc import Generator, Sequence
 from concurrent.futures import Future
@@ -17,7 +17,7 @@ from grader.workers.backend import Backend
 from grader.workers.workers import Workers
 
 AHEAD = 4
-"""How many times more submissions may be done and wait for a slower one before them."""
+"""Times the backend's capacity: how many finished submissions may wait for a slower one."""
 
 
 def grade_all(
@@ -29,18 +29,18 @@ def grade_all(
     trust_students: bool = False,
     force: bool = False,
 ) -> Generator[SubmissionOutcome, None, None]:
-    """Read, restore, run, judge and store submissions, many at a time, in their order.
+    """Read, restore, run, judge and store submissions, many at a time; yield in their order.
 
-    Each gets its row, whatever becomes of it. The backend is this machine's worker processes
-    unless another is given. `seed` replays inputs that hidden tests choose; by default they are
-    each student's own. Doing it again gives the same; where nothing has changed the stored result
-    holds, unless told to `force` a new one. Raises CourseError, and runs nothing, where there is
-    no sandbox, unless told to `trust_students`.
+    Each submission gets an outcome, whatever happens. The default backend is this machine's worker
+    processes. `seed` replays inputs that hidden tests choose; by default each student has a seed
+    of their own. Grading again gives the same result. If nothing has changed, the stored result
+    is used again, unless `force`. Raises CourseError, before anything runs, if there is no
+    sandbox, unless `trust_students`.
     """
     with backend or Workers() as backend:
         isolated = backend.require_isolation(trust_students=trust_students)
         if force or any(is_new(course, each) for each in submissions):
-            backend.begin()  # it gets ready while lessons and submissions are read
+            backend.begin()  # workers start while lessons and submissions are read
         grading = Grading(course, backend, isolated, seed, trust_students, force)
         assignments = _prepare(grading, submissions)
 
@@ -57,9 +57,9 @@ def grade_all(
 def _prepare(
     grading: Grading, submissions: Sequence[SubmissionFolder]
 ) -> dict[str, PreparedAssignment]:
-    """Bring the gradebook in order, and return what each assignment is graded by."""
+    """Bring the gradebook in order, and return each assignment prepared for grading."""
     course = grading.course
-    deadlines(course.gradebook, course.assignments())  # what is wrong with them is said now
+    deadlines(course.gradebook, course.assignments())  # raises now if the due dates are wrong
     with in_sentences(course), gradebook_lock(course.gradebook):
         bring_in_order(course)
         names = sorted({each.assignment for each in submissions if not each.problem})

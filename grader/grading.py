@@ -37,31 +37,31 @@ REPLACED = 'it was handed in again meanwhile: run ./course grade again'
 
 @dataclass(frozen=True)
 class GradedSubmission:
-    """A submission that was judged, and is not stored yet."""
+    """A submission that was judged and is not stored yet."""
 
     submission: Submission
-    """Not read where an earlier result still holds."""
+    """Its notebook was not read if an earlier result is used again."""
     notebook: NotebookNode
     """With a verdict in each grade cell."""
     files: Mapping[str, bytes]
     """Digests of the files that were judged, by name."""
     seconds: float | None = None
-    """How long that took where it ran; None for an earlier result that still holds."""
+    """Seconds that grading took where it ran; None if an earlier result is used again."""
 
 
 @dataclass(frozen=True)
 class SubmissionOutcome:
-    """What the run says of one submission."""
+    """What the run reports about one submission."""
 
     student_id: str
     assignment: str
     stored: StoredResult | None
-    """What the gradebook holds now; None where nothing could be stored."""
+    """What the gradebook holds now; None if nothing could be stored."""
     reason: str
     seconds: float | None = None
-    """How long it was graded; None where nothing was run."""
+    """Seconds that grading took; None if nothing was run."""
     reused: bool = False
-    """Whether nothing has changed since, so that the stored result holds."""
+    """Whether nothing has changed since the last grading, so that its result is used again."""
 
 
 @dataclass(frozen=True)
@@ -69,29 +69,29 @@ class PreparedAssignment:
     """What the submissions of one assignment have in common."""
 
     template: Callable[[], AssignmentTemplate]
-    """Gives what they are restored from: made for the first one that has to be run."""
+    """Returns what they are restored from; made when the first of them has to be run."""
     seed_of: Callable[[Submission], str]
-    """Gives the seed of a submission."""
+    """Returns the seed of a submission."""
     packages: tuple[str, ...]
     """ROS packages that are handed in with the notebook."""
     conditions: str
-    """What else a result depends on, as a hash."""
+    """A hash of everything else that a result depends on."""
 
 
 @dataclass(frozen=True)
 class Grading:
-    """Grades submissions of prepared assignments, one by one, with a backend that is at work."""
+    """Grades submissions of prepared assignments, one by one, with a backend that has begun."""
 
     course: Course
     backend: Backend
     isolated: bool
     seed: str = ''
-    """Replays inputs that hidden tests choose; by default they are each student's own."""
+    """Replays inputs that hidden tests choose; by default each student has a seed of their own."""
     trust_students: bool = False
     force: bool = False
 
     def prepare(self, assignment: str) -> PreparedAssignment:
-        """Register an assignment, and return what its submissions are graded by."""
+        """Register an assignment, and return what grading its submissions needs."""
         with in_sentences(self.course), gradebook_lock(self.course.gradebook):
             register(self.course, assignment)
             template = self.course.template(assignment)
@@ -109,7 +109,7 @@ class Grading:
     def start(
         self, found: SubmissionFolder, prepared: PreparedAssignment
     ) -> 'Future[GradedSubmission]':
-        """Read and restore a submission; have it run and judged, unless a result still holds."""
+        """Read and restore a submission; have it run and judged unless a result can be reused."""
         files = contents(found.folder)
         submission = unread_submission(
             found.folder,
@@ -120,7 +120,7 @@ class Grading:
         its_seed = prepared.seed_of(submission)
         key = key_of(submission, prepared.conditions, seed=its_seed)
         earlier = self._earlier(submission, key)
-        if earlier is None:  # the same bytes could be read then, and need not be read again
+        if earlier is None:  # else the same bytes were read then, and need not be read again
             submission = with_notebook(submission)
             if submission.problem:
                 key = key_of(submission, prepared.conditions, seed=its_seed)
@@ -128,7 +128,7 @@ class Grading:
         if earlier:
             return completed(GradedSubmission(submission, earlier, files))
         if not submission.problem:
-            self.backend.begin()  # it gets ready while the first template is prepared
+            self.backend.begin()  # workers start while the first template is prepared
         judged = submit_for_grading(  # restores it here; runs and judges it in a worker
             submission,
             prepared.template(),
@@ -144,7 +144,7 @@ class Grading:
     def store(
         self, found: SubmissionFolder, work: 'Future[GradedSubmission]'
     ) -> 'SubmissionOutcome':
-        """Wait until a submission is judged, and store it; say why where that can't be done."""
+        """Wait until a submission is judged, and store it, or return why that can't be done."""
         stored, reason, seconds, reused = None, found.problem, None, False
         which = printable(f'{found.assignment} of {found.student_id}')
         try:
@@ -159,11 +159,11 @@ class Grading:
                 stored = stored or store(self.course, graded.submission, graded.notebook)
             reason = stored.reason
         except (GradebookError, ClusterError):
-            raise  # nothing comes of the next one either
+            raise  # the next submission would fail in the same way
         except TaskFailed as error:
             logging.error('%s: %s\n%s', which, error, error.trace)
             reason = f'not graded, the grader failed: {error}'
-        except Exception as error:  # the next submission can do nothing for it
+        except Exception as error:  # it must not stop the submissions that follow
             if not found.problem:
                 logging.exception('%s', which)
                 reason = f'not graded, the grader failed: {type(error).__name__}: {error}'

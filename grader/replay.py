@@ -1,4 +1,4 @@
-"""Grade once more with given inputs, beside what the gradebook holds, and store nothing."""
+"""Grade again with given inputs, compare with the gradebook, and store nothing."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -27,9 +27,9 @@ def replay(
     seed: str = RECORDED,
     trust_students: bool = False,
 ) -> Iterator[tuple[str, bool]]:
-    """Yield a line for each check of each submission, and whether it is as it is stored.
+    """Yield a line for each check of each submission, and whether its verdict is as stored.
 
-    Raises CourseError where no seed is recorded.
+    Raises CourseError if no seed is recorded.
     """
     found = [each for each in submissions if not each.problem]
     seeds = [recorded_seed(course, each) if seed == RECORDED else seed for each in found]
@@ -65,7 +65,7 @@ def replay(
 
 
 def recorded_seed(course: Course, found: SubmissionFolder) -> str:
-    """Return the seed of a submission's stored result. Raises CourseError where there is none."""
+    """Return the seed of a submission's stored result. Raises CourseError if there is none."""
     graded = graded_notebook(course, found.student_id, found.assignment)
     about = graded.metadata.get(KEY, {})
     its_own = _own_seed(course, found)
@@ -79,7 +79,7 @@ def recorded_seed(course: Course, found: SubmissionFolder) -> str:
 
 
 def _own_seed(course: Course, found: SubmissionFolder) -> str:
-    """Return the seed with which a submission is graded now."""
+    """Return the seed that grading this submission would use now."""
     submission = read_submission(
         found.folder,
         student_id=found.student_id,

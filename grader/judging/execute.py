@@ -1,4 +1,4 @@
-"""Student cells run in the one kernel, grade cells in the other, for each exercise alone."""
+"""Run student cells in one kernel and grade cells in another, separately for each exercise."""
 
 import asyncio
 from collections.abc import Iterator, Sequence
@@ -23,13 +23,13 @@ from grader.kernels.isolation import require_isolation
 from grader.kernels.rooms import GradingRooms
 
 SIDE_BY_SIDE = 2
-"""Exercises of a notebook at a time, where this process runs no other one: they wait more than
-they work. With several notebooks, these are what runs side by side."""
+"""Exercises of a notebook that run at a time, if this process grades no other notebook: they
+wait more than they work. If it grades several, the notebooks run at a time instead."""
 _under_way = 0
 OUTPUT_CHARACTERS = 400
-"""What an output counts for besides its own: of small ones, some 8,000 are kept of a notebook."""
+"""What each output counts in addition to its text, so that some 8,000 small ones are kept."""
 PART_CHARACTERS = 40
-"""What each object and list in them counts for: the result that is sent may have 200,000."""
+"""What each object and list in an output counts: a worker's result may have 200,000 of them."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,12 @@ class Execution:
 
 @dataclass
 class _OutputSpace:
-    """What is left for the outputs of all cells of a notebook."""
+    """How many characters are left for the outputs of all cells of a notebook."""
 
     characters: int = MAX_NOTEBOOK_OUTPUT_CHARACTERS
 
     def fit(self, outputs: list[NotebookNode]) -> list[NotebookNode]:
-        """Return a cell's outputs while there is room for them, or a word that there is none."""
+        """Return a cell's outputs if there is room for them, else a message that there is not."""
         size = len(str(outputs)) + OUTPUT_CHARACTERS * len(outputs)
         size += PART_CHARACTERS * _parts(outputs)
         if size <= self.characters:
@@ -62,7 +62,7 @@ class _OutputSpace:
 
 
 def _parts(found: object) -> int:
-    """Count objects and lists, one in the other as deep as outputs have them."""
+    """Count objects and lists, nested ones included; outputs are not nested deeply."""
     if not isinstance(found, dict | list):
         return 0
     return 1 + sum(map(_parts, found.values() if isinstance(found, dict) else found))
@@ -70,7 +70,7 @@ def _parts(found: object) -> int:
 
 @dataclass(frozen=True)
 class _NotebookRun:
-    """What all exercises of a notebook are judged with."""
+    """What all exercises of one notebook have in common."""
 
     notebook: NotebookNode
     files: tuple[Path, ...]
@@ -99,8 +99,8 @@ def execute(
     """Run a restored notebook's exercises, each in rooms of its own, and judge them.
 
     `seed` decides the inputs that hidden tests choose. May be called inside a running event loop.
-    Nothing that a notebook does raises here; what the grader itself fails in is `ungraded`.
-    Raises CourseError where there is no sandbox, unless told to `trust_students`.
+    Nothing that a notebook does raises an exception here; if the grader itself fails, the verdict
+    is `ungraded`. Raises CourseError if there is no sandbox, unless `trust_students`.
     """
     options = {'extra_files': extra_files, 'seed': seed, 'trust_students': trust_students}
     with Pool(in_flight=1) as pool:
@@ -157,7 +157,7 @@ async def _judge(
 
 @contextmanager
 def _counted() -> Iterator[int]:
-    """Count a notebook while it runs; gives how many others this process runs already."""
+    """Count a notebook while it runs; yield how many others this process was running before."""
     global _under_way
     _under_way += 1
     try:

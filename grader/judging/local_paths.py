@@ -1,4 +1,4 @@
-"""Take out of a graded notebook where the course, its Python and its grader's home lie."""
+"""Remove local paths from a graded notebook: of the course, its Python and the home folder."""
 
 import re
 import sys
@@ -12,13 +12,13 @@ from nbformat import NotebookNode
 from grader.common.checkout import ROOT
 
 EVERYBODYS = ('/', '/usr', '/usr/local')
-"""Folders that tell nothing of anybody."""
+"""Folders that exist everywhere: they reveal nothing about this machine."""
 
 
 def hide_local_paths(notebook: NotebookNode) -> None:
     """Shorten local paths in outputs and verdicts, in place, to what students have as well.
 
-    `my_robot_basics/…` stays of a path into the course, `.venv/…` of one into its environment.
+    A path into the course becomes `my_robot_basics/…`, one into its environment `.venv/…`.
     """
     for cell in notebook.cells:
         for output in cell.get('outputs', ()):
@@ -34,14 +34,14 @@ def shorten_local_paths(text: str) -> str:
 
 @cache
 def _folders() -> tuple[re.Pattern[str], dict[str, str]]:
-    """Return what to look for, longer folders first, and what to write instead."""
+    """Return a pattern of the folders, longest first, and what to write instead of each."""
     names = {f'{ROOT}': '.', f'{sys.prefix}': '.venv', f'{sys.base_prefix}': 'python'}
     names[f'{Path.home()}'] = '~'
     shorter = {folder: name for folder, name in names.items() if folder not in EVERYBODYS}
     shorter |= {f'{ROOT}/': ''}
     longest_first = sorted(shorter, key=len, reverse=True)
     alternatives = '|'.join(map(re.escape, longest_first))
-    # a folder's whole name: /home/ada is no part of /home/adam
+    # a folder's whole name: /home/ada is not a part of /home/adam
     return re.compile(rf'(?:{alternatives})(?:(?<=/)|(?![\w.-]))'), shorter
 
 

@@ -1,7 +1,7 @@
-"""Check what a worker says came of a submission: nothing else of it reaches the gradebook.
+"""Check the result that a worker sends: nothing else of it reaches the gradebook.
 
-A worker runs strangers' code, perhaps on another machine. What it sends is text, and is believed
-only as far as its shape says what a grading can come to.
+A worker runs student code, perhaps on another machine. What it sends is text, and is accepted
+only if it has the form of a result that grading can have.
 """
 
 import json
@@ -26,9 +26,9 @@ from grader.sandbox.limits import (
 
 _MOST_SECONDS = 1e6
 """Eleven days: longer than any worker lives."""
-_STRING = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)', re.DOTALL)  # may never end
+_STRING = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)', re.DOTALL)  # may lack its end
 _MADE_BY_A_RUN = ('outputs', 'execution_count', 'metadata')
-"""What a run may change in a cell; in `metadata`, only what stands under KEY."""
+"""What a run may change in a cell; in `metadata`, only the value of KEY."""
 
 _NOTES = {
     'type': 'array',
@@ -73,7 +73,7 @@ _VERDICT = jsonschema.Draft202012Validator(
         },
         'required': ['role', 'outcome', 'reason', 'notes'],
         'additionalProperties': False,
-        # what has no points has its reason
+        # a verdict other than 'passed' needs a reason
         'if': {'properties': {'outcome': {'const': 'passed'}}},
         'then': {'properties': {'reason': {'const': ''}}},
         'else': {'properties': {'reason': {'minLength': 1}}},
@@ -82,10 +82,10 @@ _VERDICT = jsonschema.Draft202012Validator(
 
 
 def read_result(text: str, asked: NotebookNode, *, seed: str) -> tuple[NotebookNode, float]:
-    """Return the graded notebook and the seconds that a worker's answer holds.
+    """Return the graded notebook and the seconds of grading from a worker's answer.
 
     `asked` is the notebook that was to be graded, with the inputs of `seed`. Raises TaskFailed
-    where the worker says that it failed, and where the answer is not what grading can come to.
+    if the worker says that it failed, or if the answer is not a possible result of grading.
     """
     if len(text) > MAX_RESULT_BYTES:
         raise TaskFailed(
@@ -128,8 +128,8 @@ def _problems(notebook: NotebookNode, asked: NotebookNode, seed: str) -> Iterato
 
 
 def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
-    """Yield what is wrong with the verdict in a grade cell, and with the score read off it."""
-    # not before: it imports nbgrader's servers, too, and a worker would start half as fast
+    """Yield what is wrong with the verdict in a grade cell, and with the score read from it."""
+    # imported late: it imports nbgrader's servers, too, which doubles a worker's start-up time
     from nbgrader.utils import determine_grade
 
     name, verdict = grade_id(cell), cell.metadata.get(KEY)
@@ -158,14 +158,14 @@ def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
 
 
 def _tells_only(output: NotebookNode) -> bool:
-    """Whether an output is words or a picture: a result of a cell would be read as points."""
+    """Whether an output is text or a picture: nbgrader reads a cell's result as points."""
     if output.output_type == 'stream':
         return output.name == 'stdout'
     return output.output_type == 'display_data'
 
 
 def _unchanged(notebook: NotebookNode) -> list[Any]:
-    """Return what a run leaves as it is."""
+    """Return the parts of a notebook that a run does not change."""
     found: list[Any] = [{k: v for k, v in notebook.metadata.items() if k != KEY}]
     found += [notebook.nbformat, notebook.nbformat_minor]
     for cell in notebook.cells:
@@ -175,16 +175,16 @@ def _unchanged(notebook: NotebookNode) -> list[Any]:
 
 
 def _refuse_many_parts(text: str) -> None:
-    """Raise ValueError for JSON that takes many times the memory of its text."""
+    """Raise ValueError for JSON that would take many times the memory of its text."""
     parts = sum(map(_STRING.sub('', text).count, '{['))
     if parts > MAX_RESULT_PARTS:
         raise ValueError(f'{parts:,} objects and lists, more than {MAX_RESULT_PARTS:,}')
 
 
 def _expect_valid(notebook: NotebookNode, asked: NotebookNode) -> None:
-    """Raise ValidationError where a notebook breaks any rule of its format.
+    """Raise ValidationError if a notebook breaks a rule of its format.
 
-    nbformat itself would look for the words then: 40 s and 1.4 GB for 30,000 outputs.
+    nbformat's own check then composes a message: 40 s and 1.4 GB for 30,000 outputs.
     """
     if (notebook.nbformat, notebook.nbformat_minor) != (asked.nbformat, asked.nbformat_minor):
         raise nbformat.ValidationError('it is in another format')

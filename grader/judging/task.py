@@ -1,4 +1,4 @@
-"""Grade one submission: a pure function of text, which may run anywhere, twice, after a crash."""
+"""Grade one submission: a function of text, which may run anywhere, and again after a crash."""
 
 import asyncio
 import base64
@@ -32,18 +32,18 @@ class GradingTask:
     seed: str
     """Decides the inputs that hidden tests choose."""
     files: Mapping[str, bytes] = field(default_factory=dict)
-    """The student's own Python files, by name, and those of packages, by path."""
+    """The student's own Python files, by name, and the files of packages, by path."""
     trust_students: bool = False
 
 
 @dataclass(frozen=True)
 class Result:
-    """What came of a task."""
+    """The result of a task."""
 
     notebook: NotebookNode
     """With a verdict in each grade cell."""
     seconds: float
-    """How long that took, from the first kernel's start to the last one's end."""
+    """Seconds from the first kernel's start to the last kernel's end."""
 
 
 def pack(task: GradingTask) -> str:
@@ -60,25 +60,25 @@ def pack(task: GradingTask) -> str:
 
 
 async def run_packed(text: str) -> str:
-    """Do a packed task; return what came of it as JSON, in ASCII. Nothing is raised."""
+    """Do a packed task; return its result, or its error, as ASCII JSON. Raises nothing."""
     try:
         return json.dumps(await _graded(json.loads(text)))
-    except Exception as error:  # reported to the process that sent it
+    except Exception as error:  # reported to the process that sent the task
         said = f'{type(error).__name__}: {error}'[:MAX_REASON_CHARACTERS]
         trace = traceback.format_exc()[-MAX_REASON_CHARACTERS:]
         return json.dumps({'failed': said, 'traceback': trace})
 
 
 def unpack(text: str, task: GradingTask) -> Result:
-    """Check what came of a task, and return it.
+    """Check the packed result of a task, and return it.
 
-    Raises TaskFailed where it failed, and where what came back is no result of it.
+    Raises TaskFailed if the task failed, or if the text is not a result of it.
     """
     return Result(*read_result(text, task.notebook, seed=task.seed))
 
 
 def _inside(name: str) -> str:
-    """Return a path that leads nowhere else. Raises ValueError for another."""
+    """Return `name` if it leads to a file inside a folder. Raises ValueError if it does not."""
     if Path(name).is_absolute() or not {*Path(name).parts}.isdisjoint({'..', '.'}):
         raise ValueError(f'{name!r} is no path of a file in a submission')
     return name
@@ -86,7 +86,7 @@ def _inside(name: str) -> str:
 
 async def execute_exercises(notebook: NotebookNode, **options: Any) -> 'Execution':
     """Run and judge a notebook's exercises."""
-    # not before: a process that only hands tasks out needs no kernels, nor what makes them
+    # imported late: a process that only hands out tasks needs none of the modules for kernels
     from grader.judging import execute
 
     return await execute.execute_exercises(notebook, **options)

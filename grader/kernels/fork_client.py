@@ -1,6 +1,6 @@
 """Fork a kernel into a room: build the room, send the order for it, and wait for the answer.
 
-The order goes over a connection that a fork server has passed on to a process of its own.
+The order goes over a connection that a fork server has passed on to a process it has forked.
 """
 
 import asyncio
@@ -26,9 +26,9 @@ _NAMESPACES = ('user', 'mnt', 'net', 'pid', 'ipc', 'uts', 'cgroup')
 async def fork_into(
     paths: KernelPaths, *, room: str, environment: dict[str, str]
 ) -> ForkedProcess:
-    """Build a room, and fork a kernel of the 'student' or 'test' kind into it.
+    """Build a room, and fork a kernel into it; `room` is its kind, 'student' or 'test'.
 
-    Raises NoForkedKernel where none can be forked, and RoomFailure where the room can't be built.
+    Raises NoForkedKernel if kernels can't be forked, and RoomFailure if the room can't be built.
     """
     expect_fit(room)
     ordered = keeper_of(paths)
@@ -56,7 +56,7 @@ async def fork_into(
 
 
 def keeper_of(paths: KernelPaths) -> Keeper:
-    """Return the keeper of a sandboxed room: nothing else is forked into."""
+    """Return the keeper of a sandboxed room: kernels are forked into sandboxed rooms only."""
     assert paths.keeper is not None
     return paths.keeper
 
@@ -74,9 +74,10 @@ async def _built(keeper: subprocess.Popen, info_fd: int) -> int:
 async def _forked(
     paths: KernelPaths, room: str, environment: dict[str, str], first: int
 ) -> tuple[int, int, socket.socket]:
-    """Fork a kernel into the room of a first process.
+    """Fork a kernel into the room whose first process is `first`.
 
-    Return its pidfd, the listener of its signals (-1 for none), and where its end is told.
+    Return the kernel's pidfd, the listener for its signals (-1 for none), and the connection over
+    which its exit status comes.
     """
     order = json.dumps(_order(paths, environment, first)).encode()
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -98,7 +99,7 @@ async def _forked(
 
 
 def _order(paths: KernelPaths, environment: dict[str, str], first: int) -> dict:
-    """Return what a forked process must know to become a kernel in the room of a first process."""
+    """Return what the forked process needs to become a kernel in the room of process `first`."""
     folder = str(paths.inside / 'home' / 'work')
     return {
         'user': keeper_of(paths).user,
@@ -114,7 +115,7 @@ def _order(paths: KernelPaths, environment: dict[str, str], first: int) -> dict:
 
 
 async def _answer(connection: socket.socket, server: RoomForkServer) -> tuple[int, int]:
-    """Return the pidfd and the listener that come over a connection, when the kernel is ready."""
+    """Receive the pidfd and the listener from the forked process, until the kernel is ready."""
     found: dict[bytes, int] = {}
     problem = ''
     try:
@@ -122,7 +123,7 @@ async def _answer(connection: socket.socket, server: RoomForkServer) -> tuple[in
             await readable(connection.fileno())
             try:
                 text, files, _, _ = socket.recv_fds(connection, MAX_ANSWER, 1)
-            except ConnectionResetError:  # nobody has read what was sent
+            except ConnectionResetError:  # the other end closed without reading what was sent
                 text, files = b'', []
             if not text:
                 raise server.failure()

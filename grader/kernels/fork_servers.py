@@ -1,8 +1,8 @@
-"""The processes that kernels are forked from: started when one is needed, ended with this one.
+"""The processes that kernels are forked from: started on demand, ended with this process.
 
-There is one for the students' kernels and one for the tests': kernels of one server lie alike in
-memory, and the tests' need not lie as a student may know it. What runs in them is `forkserver`,
-which holds nothing of the grader's.
+There is one for the students' kernels and one for the tests': all kernels of one server have the
+same memory layout, and student code must not learn the layout of a test's kernel. They run
+`forkserver`, which contains no data of the grader.
 """
 
 import contextlib
@@ -20,25 +20,25 @@ from grader.sandbox.font_cache import font_cache
 from grader.sandbox.kernel_paths import passed_on
 
 MAX_ANSWER = 4_000
-"""Bytes that are read of what a server, or a process that it forked, has to say."""
+"""Bytes that are read of a message from a server, or from a process that it forked."""
 
 _PROGRAM = Path(__file__).with_name('forkserver')
 _ALL_SEALS = fcntl.F_SEAL_SEAL | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_GROW | fcntl.F_SEAL_WRITE
 
 
 class NoForkedKernel(Exception):
-    """Why kernels can't be forked on this machine; they can be started all the same."""
+    """Why kernels can't be forked on this machine; they can still be started one by one."""
 
 
 class RoomForkServer:
-    """A process that forks kernels, as long as this one lives and does not close it."""
+    """A process that forks kernels until this process ends or closes it."""
 
     def __init__(self, room: str) -> None:
         """Start it for the 'student' or the 'test' room; it takes connections while it imports."""
         self._room, self._has_forked = room, False
         self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs, _python() as python:
-            # safe path: neither the grader's folder nor where we are is looked in
+            # -P: Python imports neither from the grader's folder nor from the current one
             self._first = subprocess.Popen(
                 [sys.executable, '-P', str(_PROGRAM), str(theirs.fileno()), room],
                 executable=f'/proc/self/fd/{python.fileno()}',
@@ -52,18 +52,18 @@ class RoomForkServer:
             )
 
     def send(self, connection: socket.socket) -> None:
-        """Let it fork a process for a connection. Raises OSError where it has ended."""
+        """Have it fork a process that gets this connection. Raises OSError if it has ended."""
         socket.send_fds(self._control, [b'.'], [connection.fileno()])
 
     def settle(self) -> None:
-        """Forget the process that it was forked from; to be called when it has answered."""
+        """Reap the process that was started first; call this after a forked one has answered."""
         self._first.wait()
         self._has_forked = True
 
     def failure(self) -> NoForkedKernel:
-        """Return why it ended; to be called when it has.
+        """Return why the server ended; call this when it has ended.
 
-        Where it has never forked, the next one would not, either: none is started any more.
+        If it has never forked, another one would fail in the same way: none is started any more.
         """
         problem = self._last_words()
         if not self._has_forked:
@@ -71,13 +71,13 @@ class RoomForkServer:
         return NoForkedKernel(problem)
 
     def close(self) -> None:
-        """Let it end; what it has forked lives on."""
+        """Let the server end; the kernels that it has forked keep running."""
         self._control.close()
 
     def _last_words(self) -> str:
         self._first.wait()
         self._control.setblocking(False)
-        for _ in range(2):  # that it left something unread is told first
+        for _ in range(2):  # the first call may report that the server left something unread
             with contextlib.suppress(OSError):
                 if said := self._control.recv(MAX_ANSWER):
                     return said.decode(errors='replace')
@@ -86,20 +86,20 @@ class RoomForkServer:
 
 _servers: dict[str, RoomForkServer] = {}
 _unfit: dict[str, str] = {}
-"""Why no kernel can be forked for a room on this machine."""
+"""By room: why no kernel can be forked for it on this machine."""
 _lock = threading.Lock()
 
 
 def expect_fit(room: str) -> None:
-    """Raise NoForkedKernel where it is known that no kernel can be forked for this room."""
+    """Raise NoForkedKernel if it is known that no kernel can be forked for this room."""
     if room in _unfit:
         raise NoForkedKernel(_unfit[room])
 
 
 def send(connection: socket.socket, *, room: str) -> RoomForkServer:
-    """Pass a connection on to the server of a room, a new one where there is none or it has ended.
+    """Pass a connection on to the server of a room; start a new one if there is none or it ended.
 
-    Raises NoForkedKernel where that ends, too.
+    Raises NoForkedKernel if the new one ends, too.
     """
     with _lock:
         for _ in range(2):
@@ -113,7 +113,7 @@ def send(connection: socket.socket, *, room: str) -> RoomForkServer:
 
 
 def start_servers() -> None:
-    """Let the servers of both rooms import already: the first kernels need not wait for it."""
+    """Start the servers of both rooms early: they import before the first kernel is needed."""
     with _lock:
         for room in ('student', 'test'):
             if room not in _servers:
@@ -121,7 +121,7 @@ def start_servers() -> None:
 
 
 def close_servers() -> None:
-    """End the servers of this process; the next kernel starts a new one."""
+    """End the servers of this process; the next kernel starts new ones."""
     with _lock:
         while _servers:
             _servers.popitem()[1].close()
@@ -133,15 +133,16 @@ def _let_go() -> None:
     close_servers()
 
 
-# a forked process must not keep them alive; it may start its own
+# a forked process must not keep the servers alive; it may start its own
 os.register_at_fork(after_in_child=_let_go)
 
 
 def _python() -> IO[bytes]:
-    """Return the file of this Python, or a copy that nobody can change.
+    """Return this Python's file, or a copy that cannot be changed.
 
-    A kernel reaches the file that it was forked with through /proc/self/exe, and not by the
-    read-only way of its room. Where that is its user's own, it could be made unusable.
+    Through /proc/self/exe, a kernel reaches the file that it was forked with, although its room
+    mounts that file read-only. If the file belongs to the kernel's user, student code could
+    destroy it.
     """
     own = Path('/proc/self/exe')
     if own.stat().st_uid == os.geteuid() != 0:
@@ -158,5 +159,5 @@ def _sealed_copy(path: Path) -> IO[bytes]:
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment of a server: its kernels', except what only their rooms have."""
+    """Return a server's environment: that of its kernels, without what only a room provides."""
     return passed_on() | ENVIRONMENT | {'MPLCONFIGDIR': font_cache()}

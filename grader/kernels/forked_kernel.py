@@ -1,4 +1,4 @@
-"""A kernel that was forked into a room, as the process that Jupyter looks after."""
+"""A kernel that was forked into a room, as the process that Jupyter manages."""
 
 import asyncio
 import contextlib
@@ -15,7 +15,7 @@ from grader.kernels.kernel_exits import Ending
 from grader.sandbox.signals import Signals
 
 _STATUS_SEC = 5.0
-"""How long its parent may take to tell how a kernel ended."""
+"""How long a kernel's parent may take to send the kernel's exit status."""
 
 
 class ForkedProcess:
@@ -28,8 +28,8 @@ class ForkedProcess:
     ) -> None:
         """Take the process that keeps the room, and a pidfd of the kernel; both end together.
 
-        The kernel's parent says over `connection` how it ended. `listener` is where Linux tells of
-        signals that are sent in the room, or -1.
+        The kernel's parent sends the kernel's exit status over `connection`. `listener` is the
+        file where Linux reports signals that are sent in the room, or -1.
         """
         self._room, self._kernel, self._connection = room, kernel, connection
         self.signals = Signals(kernel, listener)
@@ -55,30 +55,30 @@ class ForkedProcess:
         return self._room.wait(timeout)
 
     def kill(self) -> None:
-        """End it, and all in its room."""
+        """End the kernel and everything in its room."""
         self._room.kill()
         if self._kernel >= 0:
             with contextlib.suppress(ProcessLookupError):
                 signal.pidfd_send_signal(self._kernel, signal.SIGKILL)
 
     async def ending(self) -> Ending:
-        """Return how it ended; to be called once when it has."""
+        """Return how the kernel ended; call this once, after it has ended."""
         try:
             async with asyncio.timeout(_STATUS_SEC):
                 await readable(self._connection.fileno())
             status, cpu_sec = json.loads(self._connection.recv(MAX_ANSWER))
-        except (TimeoutError, OSError, ValueError):  # its parent was ended, too
+        except (TimeoutError, OSError, ValueError):  # the parent was killed, too
             return Ending()
         number = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
         return Ending(number, sent=self.signals.explain(number), cpu_sec=cpu_sec)
 
     def close(self) -> None:
-        """Forget it, ended or not."""
+        """Close all files that belong to it, whether it has ended or not."""
         self.signals.close()
         self._connection.close()
 
     def send_signal(self, number: int) -> None:
-        """End it, whatever the signal: for an interrupt there are messages."""
+        """End the kernel, whatever the signal: Jupyter interrupts it by a message."""
         self.kill()
 
     terminate = kill

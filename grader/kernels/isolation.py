@@ -1,4 +1,4 @@
-"""Whether this machine can keep student code in a sandbox; and if not, what is missing."""
+"""Whether this machine can keep student code in a sandbox; if not, what is missing."""
 
 import contextlib
 import os
@@ -20,16 +20,16 @@ from grader.sandbox.remedies import remedy
 from grader.sandbox.sandbox import Sandbox
 
 TRUST = 'MY_ROBOT_BASICS_TRUST_STUDENTS'
-"""Set to 1, it says to nbgrader's own commands what `--trust-students` says to `./course`."""
+"""Set to 1, this variable tells nbgrader's commands what `--trust-students` tells `./course`."""
 NO_SANDBOX = 'graded without a sandbox: this machine has none'
-"""Stands once in each feedback, in the scores and above the table of what was graded so."""
+"""Shown once in each feedback, in the scores and above the table of what was graded so."""
 OLDEST_BWRAP = (0, 8)
 
 _TOOLS = {
     'bwrap': 'bubblewrap', 'nsenter': 'util-linux', 'setpriv': 'util-linux',
     'prlimit': 'util-linux', 'choom': 'util-linux', 'mount': 'mount',
 }  # fmt: skip
-"""Programs, and the packages of Debian and Ubuntu that bring them."""
+"""Programs, and the packages of Debian and Ubuntu that contain them."""
 _ROOM = ['bwrap', '--unshare-user', '--ro-bind', '/', '/']
 _TRIED = {
     'files and rights of its own (user and mount namespaces)': [*_ROOM, 'true'],
@@ -51,18 +51,18 @@ _WHOLE = 'all of it together, with limits and a filter of system calls'
 
 @dataclass(frozen=True)
 class Protection:
-    """One of the things that keep student code in."""
+    """One of the mechanisms that confine student code."""
 
     name: str
     problem: str = ''
-    """Why it is missing; empty where it is there."""
+    """Why it is missing; empty if it is available."""
     remedy: str = ''
-    """How to get it."""
+    """How to make it available."""
 
 
 @cache
 def protections() -> tuple[Protection, ...]:
-    """Try what a sandbox needs, one by one; what can't be tried for want of others is left out."""
+    """Try what a sandbox needs, one by one; stop at the first that is missing."""
     found = []
     for protection in _try_all():
         found.append(protection)
@@ -75,10 +75,10 @@ _looking: list[threading.Thread] = []
 
 
 def look_ahead() -> None:
-    """Begin to try what a sandbox needs: programs are waited for, and so much can be done."""
+    """Begin to try what a sandbox needs in a thread: it mostly waits for other programs."""
 
     def look() -> None:
-        with contextlib.suppress(Exception):  # whoever asks meets it again
+        with contextlib.suppress(Exception):  # `missing` tries again, and raises it
             protections()
 
     _looking.append(threading.Thread(target=look, name='isolation'))
@@ -86,7 +86,7 @@ def look_ahead() -> None:
 
 
 def missing() -> str:
-    """Return what is missing and how to get it, in sentences; '' where nothing is."""
+    """Return what is missing and how to get it, in sentences; '' if nothing is missing."""
     while _looking:
         _looking.pop().join()
     for protection in protections():
@@ -101,7 +101,7 @@ def missing() -> str:
 def require_isolation(*, trust_students: bool = False) -> bool:
     """Return whether student code runs in a sandbox.
 
-    Raises CourseError where it can't and nobody said that it need not.
+    Raises CourseError if it can't, unless the caller or TRUST accepts that.
     """
     problem = missing()
     if problem and not (trust_students or os.environ.get(TRUST) == '1'):
@@ -113,7 +113,7 @@ def require_isolation(*, trust_students: bool = False) -> bool:
 
 
 def accounting() -> Protection:
-    """Return who counts what rooms use, as the processes that grade find it."""
+    """Return whether each room gets a cgroup, tried as the processes that grade would."""
     command = scoped((sys.executable, '-P', '-m', 'grader.sandbox.cgroup_hierarchies'))
     tried = subprocess.run(command, capture_output=True, text=True)
     if tried.returncode == 0:
@@ -123,9 +123,9 @@ def accounting() -> Protection:
 
 
 def slow() -> str:
-    """Return why kernels have to be started one by one on this machine; '' where they are forked.
+    """Return why kernels can't be forked on this machine, but are started; '' if they are forked.
 
-    They are as closed in, and take longer.
+    Started kernels are confined in the same way, and take longer.
     """
     with Pool(in_flight=1) as pool:
         return pool.submit(_fork_one).result()
@@ -167,7 +167,7 @@ def _try_all() -> Iterator[Protection]:
 
 
 def _try_the_whole() -> str:
-    """Return why nothing could be run in a sandbox, or ''."""
+    """Return why a program could not be run in a complete sandbox, or ''."""
     with Pool(in_flight=1) as pool:
         try:
             return pool.submit(_run_nothing).result()

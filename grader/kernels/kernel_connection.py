@@ -12,7 +12,7 @@ from grader.common.errors import RoomFailure
 
 
 class KernelConnection:
-    """Prepared before the kernel starts; connect() when it was started, close() at the end."""
+    """Make it before the kernel starts; connect() after its start, close() at the end."""
 
     def __init__(self) -> None:
         """Make the context of all its sockets, with limits on what a kernel may send."""
@@ -24,9 +24,9 @@ class KernelConnection:
         self._monitors: list[zmq.asyncio.Socket] = []
 
     async def connect(self, manager: AsyncKernelManager) -> None:
-        """Wait until the kernel's sockets are there, and until it knows that we listen.
+        """Wait until the kernel's sockets exist and the kernel has seen this subscription.
 
-        Raises RoomFailure where its process ends instead.
+        Raises RoomFailure if its process ends first.
         """
 
         async def expect_alive() -> None:
@@ -44,21 +44,21 @@ class KernelConnection:
 
     @property
     def client(self) -> AsyncKernelClient:
-        """What sends requests; only once it is connected."""
+        """The client that sends requests; available after connect()."""
         assert self._client is not None
         return self._client
 
     @property
     def messages(self) -> Messages:
-        """What the kernel sends; only once it is connected."""
+        """What the kernel sends; available after connect()."""
         assert self._messages is not None
         return self._messages
 
     @property
     def is_cut_off(self) -> bool:
-        """Whether a connection has ended: by the kernel's end, by what it did, or by a message.
+        """Whether a connection ended: the kernel ended or closed it, or a message was too large.
 
-        ZMQ ends one whose message is larger than MAX_MESSAGE_BYTES; nothing comes on it any more.
+        ZMQ closes a connection when a message exceeds MAX_MESSAGE_BYTES; no more messages come.
         """
         return any(cast(int, monitor.get(zmq.EVENTS)) & zmq.POLLIN for monitor in self._monitors)
 

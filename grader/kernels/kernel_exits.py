@@ -1,4 +1,4 @@
-"""How a kernel ended, and who can be shown to have caused it."""
+"""How a kernel ended, and whether the student's code is known to have caused it."""
 
 import resource
 import signal
@@ -11,37 +11,37 @@ from grader.sandbox.cgroups import MemoryEvents
 from grader.sandbox.limits import PROCESS_LIMITS, ROOM_MEMORY_BYTES
 
 _CRASHES = {'SIGSEGV', 'SIGBUS', 'SIGILL', 'SIGFPE', 'SIGABRT', 'SIGSYS', 'SIGTRAP', 'SIGXFSZ'}
-"""What Linux sends a process for what that did itself."""
+"""Signals that Linux sends to a process because of the process's own fault."""
 _OWN = {'SIGALRM', 'SIGVTALRM', 'SIGPROF', 'SIGIO', 'SIGPIPE', 'SIGXCPU'}
-"""What Linux sends a process that has set a timer, or uses a file or a processor so."""
+"""Signals that Linux sends for a timer that a process set, or for its use of a file or CPU."""
 _TERMINALS = {'SIGHUP', 'SIGINT', 'SIGQUIT'}
-"""What Linux sends to a process whose terminal is closed, or where such keys come."""
+"""Signals that Linux sends when a terminal closes, or when Ctrl-C or Ctrl-\\ is pressed there."""
 
 
 class Responsibility(Enum):
     """Who is responsible for the end of a kernel."""
 
     STUDENTS = auto()
-    """Their code did it."""
+    """The student's code caused it."""
     DOUBTFUL = auto()
-    """Their code seems to have done it: it would do it again."""
+    """The student's code seems to have caused it: if so, it will do it again."""
     NOT_SHOWN = auto()
-    """Nothing shows that their code did it."""
+    """Nothing shows that the student's code caused it."""
 
 
 @dataclass(frozen=True)
 class Ending:
-    """How a kernel ended, as far as its parent and its room know."""
+    """How a kernel ended, as far as its parent process and its room can tell."""
 
     signal: int | None = None
-    """What ended it: 0 where it exited, None where nobody knows."""
+    """The signal that ended it; 0 if it exited, None if that is unknown."""
     sent: bool = False
-    """Whether somebody in its room sent that signal to it, or may have."""
+    """Whether a process in its room sent that signal to it, or may have sent it."""
     cpu_sec: float = 0.0
-    """The time that it kept a processor busy."""
+    """Seconds of processor time that the kernel used."""
 
     def whose(self, memory: MemoryEvents) -> tuple[Responsibility, str]:
-        """Return who is responsible, and what to say of it; '' for an ordinary exit."""
+        """Return who is responsible, and the reason as text; '' for an ordinary exit."""
         if self.signal is None:
             return Responsibility.NOT_SHOWN, 'nobody knows how it ended'
         if self.signal == 0:
@@ -67,7 +67,7 @@ class Ending:
 
 
 def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
-    """Return who is responsible where a process was ended for want of memory, and what to say."""
+    """Return who is responsible if Linux killed a process for lack of memory, and the reason."""
     if memory.limit_reached:
         return (
             Responsibility.DOUBTFUL,
@@ -77,5 +77,5 @@ def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
 
 
 def is_from_outside(number: int) -> bool:
-    """Whether a signal is none that Linux sends a program for what it, or its terminal, did."""
+    """Whether this is not a signal that Linux sends because of a program or its terminal."""
     return signal_name(number) not in _CRASHES | _OWN | _TERMINALS

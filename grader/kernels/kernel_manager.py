@@ -12,24 +12,24 @@ from grader.sandbox.kernel_paths import KernelPaths
 
 
 class OurKernelSpec(KernelSpecManager):
-    """One kernel, the interpreter we run on: no kernelspec of a student is ever looked up."""
+    """One kernel, with this process's interpreter: a student's kernelspecs are never looked up."""
 
     argv: tuple[str, ...] = ()
     metadata: dict = {}
 
     def get_kernel_spec(self, kernel_name: str) -> KernelSpec:
-        """Return it, whatever the name."""
+        """Return the kernelspec, whatever the name."""
         return KernelSpec(
             argv=list(self.argv),
             display_name='my_robot_basics',
             language='python',
-            interrupt_mode='message',  # a signal from outside would end a sandbox
+            interrupt_mode='message',  # a signal sent from outside would end a sandbox
             metadata=self.metadata,
         )
 
 
 def manager_of(paths: KernelPaths, context: Context) -> AsyncKernelManager:
-    """Return what starts, interrupts and ends the kernel with these paths."""
+    """Return the manager that starts, interrupts and ends the kernel with these paths."""
     specs = OurKernelSpec()
     specs.argv = tuple(paths.command())
     if paths.sandboxed:

@@ -27,18 +27,18 @@ from grader.sandbox.signals import killed_processes
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
 _END_SEC = 1.0
-"""A process whose sockets are closed is gone after so long, if it is ending."""
+"""How long a kernel that closed its sockets may take to end."""
 
 
 class GradingKernel:
-    """One kernel in an empty folder of its own; everything of it goes with stop()."""
+    """One kernel in an empty folder of its own; stop() ends it and removes the folder."""
 
     def __init__(
         self, *, room: str, domain_id: int, seed: str = '', paths: KernelPaths | None = None
     ) -> None:
         """Prepare a kernel of the 'student' or the 'test' room in a ROS domain.
 
-        It lives at `paths`, or else has the grading user's rights.
+        It runs in the sandbox of `paths`; without `paths`, it has the grading user's rights.
         """
         self.room = room
         self.paths = paths or make_paths(room)
@@ -56,11 +56,11 @@ class GradingKernel:
 
     @property
     def why_not_forked(self) -> str:
-        """Why a kernel in a sandbox was started and not forked; '' where it was."""
+        """Why a kernel in a sandbox was started and not forked; '' if it was forked."""
         return self._in_sandbox().why_not_forked
 
     async def start(self) -> 'GradingKernel':
-        """Start the kernel and wait until its outputs are received; raises RoomFailure."""
+        """Start the kernel and wait until its outputs can be received. Raises RoomFailure."""
         try:
             await launch(self._manager, self.paths, self.room, self._environment)
             async with asyncio.timeout(START_TIMEOUT_SEC):
@@ -81,10 +81,10 @@ class GradingKernel:
         expressions: dict[str, str] | None = None,
         used_sec: UsedSec = lambda: None,
     ) -> CellRun:
-        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that does nothing.
+        """Run one cell; interrupt it after `timeout_sec`, kill the kernel if that has no effect.
 
-        A cell that floods its outputs counts as timed out at once. One that used less of a
-        processor than it could have gets longer: `used_sec` tells how much its room has used.
+        A cell that floods its outputs counts as timed out at once. A cell that got too little
+        processor time gets longer: `used_sec` returns how much its room has used, in s.
         """
         result = CellRun()
         if not self.alive:
@@ -118,9 +118,9 @@ class GradingKernel:
         return result
 
     async def ending(self) -> Ending | None:
-        """Look whether the kernel has ended, and return how; None where it lives, or we ended it.
+        """Return how the kernel ended; None if it is running, or if we ended it.
 
-        If it has the grading user's rights, nobody knows who sent a signal.
+        Without a sandbox, it is not known which process sent a signal.
         """
         if self._ending is None and not self._ended_by_us and not await self._is_alive():
             if self.paths.sandboxed:
@@ -132,9 +132,9 @@ class GradingKernel:
         return self._ending
 
     def foreign_signal(self) -> int:
-        """Return what signal from outside ended a process that the kernel started, or 0.
+        """Return the signal from outside that ended a process which the kernel started, or 0.
 
-        They are known while nobody in the room has asked how they ended.
+        Such a process is found only until a process in the room has waited for it.
         """
         signals = self._in_sandbox().signals if self.paths.sandboxed and self.alive else None
         if signals is None:
@@ -145,7 +145,7 @@ class GradingKernel:
         return 0
 
     async def stop(self, *, politely: bool = True) -> None:
-        """End the kernel and its folder; politely first where nodes of its hold shared memory."""
+        """End the kernel and remove its folder; `politely`, its nodes first free shared memory."""
         if politely and self.alive and self._manager.has_kernel:
             self._connection.client.shutdown()
             with contextlib.suppress(TimeoutError):
@@ -155,11 +155,11 @@ class GradingKernel:
         self.paths.remove()
 
     def _in_sandbox(self) -> SandboxProvisioner:
-        """Return what runs a sandboxed kernel: its kernelspec names that."""
+        """Return the provisioner of a sandboxed kernel: its kernelspec names this class."""
         return cast(SandboxProvisioner, self._manager.provisioner)
 
     async def _lives_on(self) -> bool:
-        """Whether the kernel did not end with its connection; what ends takes a moment for it."""
+        """Whether the kernel still runs; wait first, because it may be about to end."""
         moment = asyncio.ensure_future(asyncio.sleep(_END_SEC))
         try:
             await finished(moment, _END_SEC, self._is_alive)
@@ -168,14 +168,14 @@ class GradingKernel:
         return self.alive
 
     async def _kill(self) -> None:
-        """Kill the kernel's process group, and what left the group but kept its environment."""
+        """Kill the kernel's process group, and processes that left it but kept its environment."""
         self.alive = False
         provisioner = self._manager.provisioner
         if self._manager.has_kernel and provisioner is not None:
             await provisioner.kill()
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._exited(), STOP_GRACE_SEC)
-                # else it would be sent an interrupt, and that be waited for
+                # or shutdown_kernel would send an interrupt, and wait for the effect
                 await provisioner.wait()
             await self._manager.shutdown_kernel(now=True)
         if not self.paths.sandboxed:

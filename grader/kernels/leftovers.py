@@ -1,4 +1,4 @@
-"""What a kernel without a sandbox started and left behind."""
+"""Processes that a kernel without a sandbox started and left behind."""
 
 import asyncio
 import contextlib
@@ -8,7 +8,7 @@ import psutil
 
 
 async def kill_leftovers(ipython_folder: str, *, timeout_sec: float) -> None:
-    """Kill what left the kernel's process group but kept its environment, for so long at most."""
+    """Kill processes that left the kernel's process group but kept its environment."""
     deadline = time.monotonic() + timeout_sec
     while (left := _leftovers(ipython_folder)) and time.monotonic() < deadline:
         for process in left:

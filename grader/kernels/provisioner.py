@@ -1,7 +1,7 @@
 """How Jupyter starts a kernel in a sandbox: by the name of its kernelspec, or in a given room.
 
 jupyter_client finds this class by its entry point, so nbclient, JupyterLab and nbgrader can run a
-notebook in the kernel that is called NAME. The grader itself names the rooms that it has opened.
+notebook in the kernel that is called NAME. The grader passes the paths of rooms that it opened.
 """
 
 import asyncio
@@ -29,24 +29,24 @@ from grader.sandbox.signals import Signals
 
 START_TIMEOUT_SEC = 60.0
 _SIGNALLED = 128
-"""A signal's number and this is what bubblewrap exits with where a signal ended its command."""
+"""If a signal ended its command, bubblewrap exits with the signal's number plus this."""
 NAME = 'my_robot_basics_sandbox'
-"""Of the kernelspec, and of this provisioner's entry point."""
+"""The name of the kernelspec, and of this provisioner's entry point."""
 
 
 def made_in(paths: KernelPaths) -> Path:
-    """Return where a room's kernel makes its sockets."""
-    assert paths.made is not None  # every room says it
+    """Return the folder where a room's kernel creates its sockets."""
+    assert paths.made is not None  # every sandboxed room has it
     return paths.made
 
 
 class SandboxProvisioner(LocalProvisioner):
-    """Runs one kernel in a room, forked from a preloaded process where this machine can."""
+    """Runs one kernel in a room, forked from a preloaded process if this machine can do that."""
 
     why_not_forked = ''
-    """Why the kernel was started the slow way, where it was."""
+    """Why the kernel was started, which is slower, and not forked; '' if it was forked."""
     signals: Signals | None = None
-    """What the room's processes send each other."""
+    """Signals that the room's processes send to each other."""
     _paths: KernelPaths
     _pins: dict[str, int]
     _room = 'student'
@@ -61,9 +61,9 @@ class SandboxProvisioner(LocalProvisioner):
     async def pre_launch(
         self, *, paths: KernelPaths | None = None, room: str = 'student', **kwargs: Any
     ) -> dict[str, Any]:
-        """Prepare the room: with the given `paths`, or in a sandbox of this kernel's own.
+        """Prepare the room: the one with the given `paths`, or a new sandbox for this kernel.
 
-        In one of its own a kernel is told nothing of the caller's environment. Raises RoomFailure.
+        In a new sandbox, the kernel gets nothing of the caller's environment. Raises RoomFailure.
         """
         self._room, self._pins, manager = room, {}, self._manager
         if paths is None:
@@ -73,31 +73,31 @@ class SandboxProvisioner(LocalProvisioner):
             manager.transport, manager.ip = 'ipc', str(paths.sockets / 'zmq')
         self._paths = paths
         kwargs = await super().pre_launch(**kwargs)
-        for port in manager.ports:  # of a former kernel, on a restart
+        for port in manager.ports:  # sockets of the earlier kernel, after a restart
             (made_in(paths) / f'zmq-{port}').unlink(missing_ok=True)
         paths.write_connection_file(Path(manager.connection_file))
         return kwargs | {'cmd': paths.command()}
 
     async def launch_kernel(self, cmd: list[str], **kwargs: Any) -> KernelConnectionInfo:
-        """Fork the kernel, or start it: in the same room, and with no more rights."""
+        """Fork the kernel, or else start it, in the same room and with the same rights."""
         try:
             forked = await fork_into(self._paths, room=self._room, environment=kwargs['env'])
         except NoForkedKernel as problem:
             self.why_not_forked = str(problem)
             return await self._started(kwargs['env'])
-        # it has what jupyter_client asks of a process
+        # ForkedProcess has every method that jupyter_client calls
         self.process = forked  # type: ignore[assignment]
         self.pid, self.signals = forked.pid, forked.signals
         return self.connection_info
 
     async def ending(self) -> Ending:
-        """Return how the kernel ended; to be called once when it has, before its cleanup."""
+        """Return how the kernel ended; call this once, after its end and before its cleanup."""
         if isinstance(self.process, ForkedProcess):
             return await self.process.ending()
         assert self.process is not None  # it was started
         status = self.process.returncode
         if status is None or status < 0 or self.signals is None:
-            return Ending()  # what ended the room's keeper was outside of it
+            return Ending()  # the room's keeper was ended from outside the room
         exited = status <= _SIGNALLED or status == self.signals.exit_code
         number = 0 if exited else status - _SIGNALLED
         return Ending(number, sent=self.signals.explain(number))
@@ -125,10 +125,10 @@ class SandboxProvisioner(LocalProvisioner):
         return info
 
     async def post_launch(self, **kwargs: Any) -> None:
-        """Let all connections lead to the sockets that the kernel makes now.
+        """Link each connection to the socket that the kernel has created.
 
-        Their folder is the student's, too, who may put links there to sockets of the machine.
-        Raises RoomFailure.
+        Student code can write to the sockets' folder, and replace a socket by a link to a socket
+        of the machine; so each socket is opened without following links. Raises RoomFailure.
         """
         await super().post_launch(**kwargs)
         names = [f'zmq-{port}' for port in self._manager.ports]
@@ -143,7 +143,7 @@ class SandboxProvisioner(LocalProvisioner):
             (self._paths.sockets / name).symlink_to(f'/proc/self/fd/{pin}')
 
     async def cleanup(self, restart: bool = False) -> None:
-        """Close the sandbox, if it is this kernel's own."""
+        """Close the sandbox if it was opened for this kernel alone."""
         await super().cleanup(restart=restart)
         for name, pin in self._pins.items():
             (self._paths.sockets / name).unlink(missing_ok=True)
@@ -157,7 +157,7 @@ class SandboxProvisioner(LocalProvisioner):
             await self._close()
 
     def resolve_path(self, path_str: str) -> None:
-        """Tell no path: the kernel's files are not on this machine's disk."""
+        """Do nothing: the kernel's files are not on this machine's disk, so there is no path."""
 
     async def _open(self) -> KernelPaths:
         if self._sandbox is None:

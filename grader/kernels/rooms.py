@@ -39,13 +39,12 @@ class GradingRooms:
         isolated: bool = True,
         doubts: list[str] | None = None,
     ) -> None:
-        """Prepare two rooms; the student's gets a copy of the submission's own modules.
+        """Prepare two rooms; the student's gets copies of `extra_files`, the student's own files.
 
-        A folder among them is a ROS package.
-
-        Unless `isolated`, what runs in them has the grading user's rights. `doubts` is shared
-        by all rooms of an exercise: what its code seems to have done. The first time counts as
-        a failure of the room, the second one as its own.
+        Each of them is a Python module, or a folder that is a ROS package. Unless `isolated`,
+        the kernels have the grading user's rights. All rooms of an exercise share `doubts`, the
+        suspected faults of student code: the first one counts as a failure of the room, which is
+        judged again, the second as the student's fault.
         """
         self._extra_files = tuple(extra_files)
         self._seed = seed
@@ -56,7 +55,7 @@ class GradingRooms:
         self._doubts = [] if doubts is None else doubts
 
     async def __aenter__(self) -> 'GradingRooms':
-        """Start both kernels, and see a message cross from one to the other."""
+        """Start both kernels, and check that a message from one reaches the other."""
         try:
             await self._open()
             await together(self._prepare_student(), self._prepare_test())
@@ -70,7 +69,7 @@ class GradingRooms:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        """End both kernels, whatever state they are in, and give the domain back."""
+        """End both kernels, whatever state they are in, and release the ROS domain."""
         try:
             await self._stop_kernels()
         finally:
@@ -87,7 +86,7 @@ class GradingRooms:
     async def run_student_cell(self, source: str, *, timeout_sec: float) -> CellRun:
         """Run one of the student's cells.
 
-        Raises RoomFailure where their kernel ended and nothing shows that they did it.
+        Raises RoomFailure if the kernel ended and nothing shows that the student's code did it.
         """
         run = await self._student.run(
             source, timeout_sec=timeout_sec, used_sec=self.student_cpu_sec
@@ -97,15 +96,15 @@ class GradingRooms:
         return run
 
     def student_cpu_sec(self) -> float | None:
-        """How long the student's room has kept processors busy, in s; None where nobody counts."""
+        """Return the CPU time in s that the student's room has used; None if it is not counted."""
         cgroup = self._sandbox.cgroup('student') if self._sandbox else None
         return cgroup.cpu_sec() if cgroup else None
 
     async def run_check(self, source: str) -> CellRun:
-        """Run a grade cell, passing its questions on to the student's kernel.
+        """Run a grade cell, and pass its requests on to the student's kernel.
 
-        Raises RoomFailure where it failed and something ended a process of the student's that
-        nothing shows to have been theirs.
+        Raises RoomFailure if the cell failed and a process of the student's was ended by something
+        else than the student's code, as far as is known.
         """
         run = await self._test.run(
             source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
@@ -115,9 +114,9 @@ class GradingRooms:
         return run
 
     async def _expect_fair(self) -> str:
-        """Return what the student did to end a process of theirs; '' where nothing tells.
+        """Return how the student's code ended a process of its own; '' if it is not known to have.
 
-        Raises RoomFailure where nothing shows that it was theirs.
+        Raises RoomFailure if nothing shows that the student's code did it.
         """
         memory = self._sandbox.memory_events('student') if self._sandbox else MemoryEvents()
         responsibility, why = Responsibility.STUDENTS, ''
@@ -138,7 +137,7 @@ class GradingRooms:
         return why
 
     async def _ask_student(self, request: str) -> str:
-        """Take one question of a check over, and text of a bounded size back."""
+        """Pass a check's request to the student's kernel; return the reply, of a bounded size."""
         run = await self._student.run(
             '',
             timeout_sec=REPLY_TIMEOUT_SEC,
@@ -163,7 +162,7 @@ class GradingRooms:
         return kernel
 
     async def _stop_kernels(self) -> None:
-        # a check has closed its nodes itself; an interpreter with rclpy may be slow to end
+        # a check closes its nodes itself; an interpreter with rclpy may take long to exit
         polite = 'student' if self._sandbox is None else None
         stops = [kernel.stop(politely=kernel.room == polite) for kernel in self._kernels]
         failed = [e for e in await asyncio.gather(*stops, return_exceptions=True) if e]

@@ -1,8 +1,8 @@
 """A program that has imported what a kernel needs, and forks kernels into rooms.
 
-It is run by its folder, so that nothing of the grader is loaded with it: whatever this process
-holds, each kernel can read. The connection with the order for one kernel goes to a process forked
-for it, so that no order is ever here: what one room is told stays unknown to the next.
+It is run by the path of its folder, so that no module of the grader is loaded: each kernel can
+read all memory of this process. The connection with the order for a kernel goes to a process
+forked for it. This process reads no order, so nothing sent to one room reaches the next.
 """
 
 import gc
@@ -21,12 +21,12 @@ _PR_SET_CHILD_SUBREAPER = 36
 
 
 def main(control: socket.socket, room: str) -> None:
-    """Import, then fork a kernel for each connection that comes; returns in the kernels alone.
+    """Import, then fork a kernel for each connection that comes; returns only in the kernels.
 
-    Why it can't go on, it says over `control`. It ends when the process at the other end does.
+    If it can't go on, it sends the reason over `control`. It ends when the other end closes.
     """
     _leave_no_names()
-    gc.disable()  # to look for garbage meanwhile takes a tenth of the time, and finds a megabyte
+    gc.disable()  # garbage collection takes a tenth of the import time, and frees one megabyte
     privilege_drop.close_all_but(control.fileno())  # the file of Python may be open, too
     try:
         before = dict(os.environ)
@@ -35,10 +35,10 @@ def main(control: socket.socket, room: str) -> None:
         single_thread.become_alone()
     except Exception as error:
         control.send(f'{type(error).__name__}: {error}'[:2000].encode())
-        os._exit(1)  # a thread may be what is wrong, and would be waited for
-    gc.freeze()  # a collection in a kernel would else copy all of it
+        os._exit(1)  # a normal exit would wait for threads, and a thread may be the problem
+    gc.freeze()  # or a garbage collection in a kernel would copy all of this memory
     gc.enable()
-    # what ends is waited for by nobody; a kernel's parent waits for that alone
+    # Linux reaps ended processes itself; only a kernel's parent waits, for its kernel alone
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     libc.call('prctl', _PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     while True:
@@ -54,7 +54,7 @@ def main(control: socket.socket, room: str) -> None:
 
 
 def _leave_no_names() -> None:
-    """Let a student's modules be called as the ones beside this one are."""
+    """Let a student's modules have the same names as the modules in this folder."""
     sys.path.remove(os.path.dirname(__file__))
     for module in (imports, libc, offline, privilege_drop, single_thread):
         del sys.modules[module.__name__]
@@ -62,7 +62,7 @@ def _leave_no_names() -> None:
 
 if __name__ == '__main__':
     main(socket.socket(fileno=int(sys.argv[1])), sys.argv[2])
-    # only a kernel comes here
+    # only a kernel reaches this line
     offline.keep_off_the_network()
     from ipykernel.kernelapp import launch_new_instance
 

@@ -1,6 +1,6 @@
-"""What is imported before the first fork, so that no kernel has to: libraries, and no test.
+"""What is imported before the first fork, so that no kernel has to: libraries, but no tests.
 
-Nothing here may start a thread, call rclpy.init or make a ZMQ context: a fork takes none along.
+Nothing here may start a thread, call rclpy.init or make a ZMQ context: a fork does not copy them.
 """
 
 import ctypes
@@ -26,7 +26,7 @@ _BOTH = (
     'matplotlib.backends.backend_agg',
     'matplotlib.figure',
     'matplotlib.font_manager',
-    'numpy.random',  # each kernel makes other numbers, see `_forget`
+    'numpy.random',  # each kernel seeds it again, see `_forget`
     'pygments.formatters.terminal256',
     'rclpy',
     'rclpy.action',
@@ -65,7 +65,7 @@ _ROOMS = {
         'my_robot_basics.graph',
     ),
 }
-"""What is imported for each room, with all that is in it, beside what both need."""
+"""Packages imported for one room only, with all their modules, in addition to _BOTH."""
 
 
 def import_for(room: str) -> None:
@@ -78,7 +78,7 @@ def import_for(room: str) -> None:
 
 
 def _import_all_of(name: str) -> None:
-    """Import a package and all modules in it but programs: a list of them would not stay whole."""
+    """Import a package and its modules, except programs; a written list would become outdated."""
     package = importlib.import_module(name)
     for module in pkgutil.iter_modules(package.__path__, f'{name}.'):
         if module.ispkg:

@@ -1,4 +1,4 @@
-"""System calls for which this Python has no function of its own."""
+"""System calls that this version of Python has no function for."""
 
 import ctypes
 import mmap
@@ -13,7 +13,7 @@ _libc.mmap.restype = ctypes.c_void_p
 
 
 def call(name: str, *arguments: int | bytes) -> None:
-    """Call a function of the C library that returns -1 where it fails. Raises OSError then."""
+    """Call a function of the C library that returns -1 on failure. Raises OSError then."""
     given = [ctypes.c_ulong(a) if isinstance(a, int) else a for a in arguments]
     if getattr(_libc, name)(*given) == -1:
         number = ctypes.get_errno()
@@ -21,14 +21,14 @@ def call(name: str, *arguments: int | bytes) -> None:
 
 
 def listen(program: bytes) -> int:
-    """Set a filter of system calls; return the file where those come that it passes on, or -1."""
+    """Install a seccomp filter; return the file descriptor of its notifications, or -1."""
     instructions = ctypes.create_string_buffer(program, len(program))
     header = struct.pack('@HP', len(program) // 8, ctypes.addressof(instructions))
     return _libc.syscall(_SECCOMP, _SET_MODE_FILTER, _NEW_LISTENER, header)
 
 
 def put_own_memory(start: int, end: int) -> None:
-    """Put empty memory, to be read alone, in the place of what lies there. Raises OSError."""
+    """Map empty read-only memory over an address range of this process. Raises OSError."""
     place = _libc.mmap(
         ctypes.c_void_p(start), ctypes.c_size_t(end - start), mmap.PROT_READ,
         mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | _MAP_FIXED, -1, ctypes.c_long(0),

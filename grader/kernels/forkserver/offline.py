@@ -1,7 +1,7 @@
-"""Keep a kernel off the network: it listens in its own folder alone.
+"""Keep a kernel off the network: it listens only on sockets in its own folder.
 
-ipykernel takes the output of processes that were forked in a kernel over TCP, whatever transport
-the kernel has, and reads whatever comes. The network of a room is the other room's, too.
+ipykernel receives the output of processes forked in a kernel over TCP, whatever transport the
+kernel uses, and reads whatever is sent there. The two rooms share one network.
 """
 
 import json
@@ -10,7 +10,7 @@ from typing import Any
 
 
 def keep_off_the_network() -> None:
-    """Let what forked processes print come over a Unix socket beside the kernel's own."""
+    """Receive the output of forked processes over a Unix socket beside the kernel's own."""
     from ipykernel.iostream import IOPubThread
 
     # methods of a library, replaced on purpose
@@ -34,7 +34,7 @@ def _listen(self: Any) -> None:
 
 
 def _connect(self: Any) -> tuple:
-    """Return the context and the socket of a forked process, which needs its own."""
+    """Return a context and a socket for a forked process, which can't use its parent's."""
     import zmq
 
     context = zmq.Context()

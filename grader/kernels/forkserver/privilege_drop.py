@@ -1,4 +1,4 @@
-"""What a forked process does to become a kernel: join its room, and give up all rights."""
+"""What a forked process does to become a kernel: join its room, and give up all privileges."""
 
 import contextlib
 import ctypes
@@ -18,7 +18,7 @@ from libc import call, listen
 
 _MAX_ORDER = 1_000_000
 _MAX_FILES = 8
-"""The room, and where its cgroup is joined in each hierarchy."""
+"""How many files come with an order: a pidfd of the room, a cgroup entry per hierarchy."""
 _NAMESPACES = {
     'user': 0x10000000, 'mnt': 0x00020000, 'net': 0x40000000, 'pid': 0x20000000,
     'ipc': 0x08000000, 'uts': 0x04000000, 'cgroup': 0x02000000,
@@ -29,31 +29,31 @@ _SECCOMP_MODE_FILTER, _CLEAR_ALL, _CAPABILITIES_V3 = 2, 4, 0x20080522
 
 
 def become_a_kernel(connection: socket.socket, made: dict[str, str]) -> None:
-    """Do as ordered, in the room that is sent, and return where only the kernel is left to start.
+    """Receive an order, enter its room, and return in the process that becomes the kernel.
 
-    `made` is what imports have put into the environment. The process that was forked first can't
-    enter a PID namespace itself: its child does, and it stays to tell how that ended. Neither
-    returns where something fails.
+    `made` is what imports have added to the environment. `setns` moves only children into a PID
+    namespace. So this process forks the kernel, stays outside, and reports the kernel's exit
+    status. If anything fails, neither of the two returns.
     """
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         text, (room, *cgroups), _, _ = socket.recv_fds(connection, _MAX_ORDER, _MAX_FILES)
         for entrance in cgroups:
-            os.write(entrance, b'0')  # this process joins, and what it forks is born there
+            os.write(entrance, b'0')  # this process joins; what it forks starts in the cgroup
         order = json.loads(text)
         order['environment'] |= made
-        # in the room /proc is read-only: what is forked there inherits this, and keeps it
+        # in the room /proc is read-only: the kernel and all its processes inherit this value
         Path('/proc/self/oom_score_adj').write_text(str(order['oom_score_adj']), encoding='ascii')
         _enter(room, order)
         ours = os.getpgrp()
         os.setpgrp()
         if child := os.fork():
-            os.setpgid(0, ours)  # what the kernel sends to its group must not reach this process
+            os.setpgid(0, ours)  # signals that the kernel sends to its group must not come here
             socket.send_fds(connection, [b'kernel'], [os.pidfd_open(child)])
             _tell_the_end(connection, child)
         listener = _settle(order, keep=connection.fileno())
         socket.send_fds(connection, [b'ready'], [listener] if listener >= 0 else [])
-        # not before: Linux lets nobody send a file who has more under way than this limit
+        # set last: a user with more files in flight than this limit can send no file
         _limit(order, only_files=True)
     except BaseException as error:
         connection.send(f'{type(error).__name__}: {error}'[:2000].encode())
@@ -64,9 +64,9 @@ def become_a_kernel(connection: socket.socket, made: dict[str, str]) -> None:
 
 
 def _tell_the_end(connection: socket.socket, child: int) -> NoReturn:
-    """Wait for a kernel, and tell its status and its seconds of processor time: only a parent can.
+    """Wait for a kernel, and send its exit status and CPU seconds: only its parent gets them.
 
-    Nothing in the room sees this process, or can send it a signal.
+    Processes in the room can't see this process or send it a signal.
     """
     _drop_capabilities()
     close_all_but(connection.fileno())
@@ -83,7 +83,7 @@ def close_all_but(keep: int) -> None:
 
 
 def _enter(room: int, order: dict) -> None:
-    """Go where the process of a pidfd is; groups and user first: they are not known there."""
+    """Enter the namespaces of a pidfd's process; first take the slot's user ID, unknown inside."""
     if order['user'] is not None:
         os.setgroups([])
         os.setresgid(*[order['user']] * 3)
@@ -92,7 +92,7 @@ def _enter(room: int, order: dict) -> None:
 
 
 def _settle(order: dict, *, keep: int) -> int:
-    """Give up all rights, and be as a new process is there; only the file `keep` stays open.
+    """Give up all privileges, and set up what a new process has; only the file `keep` stays open.
 
     Return the listener for signals that are sent from here on; -1 if Linux reports none.
     """
@@ -101,7 +101,7 @@ def _settle(order: dict, *, keep: int) -> int:
         os.dup2(null, standard)
     os.chdir(order['folder'])
     _drop_capabilities()
-    call('prctl', _PR_SET_DUMPABLE, 1, 0, 0, 0)  # else /proc/self would be somebody else's
+    call('prctl', _PR_SET_DUMPABLE, 1, 0, 0, 0)  # or /proc/self would belong to another user
     _limit(order, only_files=False)
     os.environ.clear()
     os.environ.update(order['environment'])
@@ -115,7 +115,7 @@ def _settle(order: dict, *, keep: int) -> int:
 
 
 def _limit(order: dict, *, only_files: bool) -> None:
-    """Set the limit of open files, or all others."""
+    """Set the limit on open files, or all other limits."""
     for kind, most in order['limits']:
         if (kind == resource.RLIMIT_NOFILE) is only_files:
             resource.setrlimit(kind, (most, most))
@@ -136,7 +136,7 @@ def _filter_system_calls(program: bytes) -> None:
 
 
 def _forget(command: list[str]) -> None:
-    """Have nothing in common with other kernels that was made up by chance, nor old listings."""
+    """Remove what all forked kernels share: random state, cached listings, command lines."""
     random.seed()
     sys.modules['numpy'].random.seed()
     sys.path_importer_cache.clear()

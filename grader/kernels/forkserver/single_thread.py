@@ -1,4 +1,4 @@
-"""Be a process that can be forked: one thread, and no memory that others share."""
+"""Make this process safe to fork: one thread, and no memory shared with other processes."""
 
 import os
 import sys
@@ -14,9 +14,9 @@ _ASLEEP_SEC = 10.0
 
 
 def become_alone() -> None:
-    """Leave behind what an import has started or shares. Raises RuntimeError where more is left.
+    """Drop the threads and shared memory that imports made. Raises RuntimeError if others remain.
 
-    What goes on is a child of the process that called it.
+    It returns in a child of the process that called it.
     """
     _leave_threads_behind()
     _unshare_memory()
@@ -24,10 +24,10 @@ def become_alone() -> None:
 
 
 def _leave_threads_behind() -> None:
-    """Go on as a process that has this thread alone.
+    """Continue in a forked child, which has only this thread.
 
-    LTTng, which the ROS wheels bring, waits for its daemon in two. They do nothing else, and hold
-    no lock while they sleep.
+    LTTng, which comes with the ROS wheels, waits for its daemon in two threads. They do nothing
+    else, and hold no lock while they sleep.
     """
     deadline = time.monotonic() + _ASLEEP_SEC
     while not all(_asleep(task) for task in _other_threads()):
@@ -35,7 +35,7 @@ def _leave_threads_behind() -> None:
             raise RuntimeError('an import has started threads that do not come to rest')
         time.sleep(0.001)
     with warnings.catch_warnings():
-        warnings.simplefilter('ignore', DeprecationWarning)  # that there are threads, we know
+        warnings.simplefilter('ignore', DeprecationWarning)  # it warns that there are threads
         if os.fork():
             os._exit(0)
 
@@ -52,13 +52,13 @@ def _asleep(task: str) -> bool:
 
 
 def _unshare_memory() -> None:
-    """Put memory of our own in the place of what an import shares with the machine."""
+    """Replace memory that an import shares with the machine by private memory."""
     for start, end in [(s, e) for s, e, _, path in _shared() if path.startswith('/dev/shm/')]:
         libc.put_own_memory(start, end)
 
 
 def _shared() -> Iterator[tuple[int, int, str, str]]:
-    """Yield begin, end, rights and path of this process's shared memory."""
+    """Yield start, end, permissions and path of each shared mapping of this process."""
     for line in Path('/proc/self/maps').read_text(encoding='utf-8').splitlines():
         addresses, rights, _, _, _, *path = line.split(maxsplit=5)
         if rights.endswith('s'):
@@ -67,9 +67,9 @@ def _shared() -> Iterator[tuple[int, int, str, str]]:
 
 
 def _expect_nothing_shared() -> None:
-    """Raise RuntimeError where a fork would not get all, or would share memory with others.
+    """Raise RuntimeError if a fork would lose a thread, or share memory with other processes.
 
-    A read-only file that each room has anyway is no such memory.
+    Read-only mappings of files that each room has anyway are allowed.
     """
     threads = len(os.listdir('/proc/self/task'))
     if threads != 1 or threading.active_count() != 1:
