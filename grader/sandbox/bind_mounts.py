@@ -1,4 +1,4 @@
-"""What a room sees of the machine: the system, Python, the course's package, and nothing else."""
+"""What a room sees of the machine: the system, Python and the course's package only."""
 
 import os
 import subprocess
@@ -12,22 +12,22 @@ from grader.sandbox.font_cache import font_cache
 
 _SYSTEM = ('/usr', '/bin', '/sbin', '/lib', '/lib32', '/lib64', '/libx32')
 _SETTINGS = ('ld.so.cache', 'ld.so.conf', 'ld.so.conf.d', 'alternatives', 'fonts', 'localtime')
-"""What programs look up under /etc; the machine's users, hosts and secrets are not among it."""
+"""What programs need from /etc; the machine's users, hosts and secrets are not included."""
 _FONTS = 'fontlist-*.json'
 
 
 @cache
 def sources() -> tuple[Path, ...]:
-    """Return what the rooms see and lies outside the system: each has its number in `shown`."""
+    """Return what rooms see outside the system folders; `shown` mounts each by its index here."""
     package = Path(my_robot_basics.__file__).parents[1]
     return (Path(sys.base_prefix).resolve(), Path(sys.prefix), package, *_font_list())
 
 
 def shown(seen: str, *, configuration: str) -> list[str]:
-    """Return the part of a bwrap command that shows a room all that it sees, read-only.
+    """Return the part of a bwrap command that mounts all that a room sees, read-only.
 
-    `seen` holds `sources()` by their numbers; matplotlib's `configuration` is where the room's
-    own will look for its list of fonts.
+    The folder `seen` contains `sources()` by their index. The list of fonts is mounted in
+    `configuration`, the room's MPLCONFIGDIR, where matplotlib looks for it.
     """
     base, prefix, package, *fonts = sources()
     options = []
@@ -42,7 +42,7 @@ def shown(seen: str, *, configuration: str) -> list[str]:
         if not path.is_relative_to('/usr'):
             options += ['--ro-bind', f'{seen}/0', str(path)]
     options += _links(base)
-    # the course itself is not there, even where it lies inside of what is
+    # hide the course itself, even if it is inside one of the folders mounted above
     options += ['--tmpfs', str(ROOT)]
     options += ['--ro-bind', f'{seen}/1', str(prefix), '--ro-bind', f'{seen}/2', str(package)]
     options += ['--remount-ro', str(ROOT)]
@@ -52,7 +52,7 @@ def shown(seen: str, *, configuration: str) -> list[str]:
 
 
 def _links(base: Path) -> list[str]:
-    """Lead from the environment's `python` to where it really lies."""
+    """Recreate the chain of links from the environment's `python` to the real file."""
     made, path = [], Path(sys.executable)
     while path.is_symlink():
         target = path.readlink()
@@ -64,7 +64,7 @@ def _links(base: Path) -> list[str]:
 
 
 def _font_list() -> list[Path]:
-    """Return matplotlib's list of fonts, that a room need not make its own for seconds."""
+    """Return matplotlib's font lists: without them, each room would take seconds to make one."""
     folder = Path(font_cache())
     if not any(folder.glob(_FONTS)):
         command = [sys.executable, '-c', 'import matplotlib.font_manager']

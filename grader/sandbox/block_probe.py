@@ -1,8 +1,8 @@
-"""What keeps a sandbox from being built here: `python -P -m grader.sandbox.block_probe`.
+"""What prevents a sandbox on this machine: `python -P -m grader.sandbox.block_probe`.
 
-It prints the first step that fails and its error. Each system call is first made with arguments
-that Linux refuses with another error than a filter does: so a filter is told from the rest. Then
-the steps of bubblewrap are taken, one by one, in a child.
+It prints the first step that fails and its error. First it calls each system call with arguments
+for which Linux itself returns another error than a seccomp filter does, which shows whether a
+filter refuses it. Then it takes the steps of bubblewrap, one by one, in a child.
 """
 
 import ctypes
@@ -21,7 +21,7 @@ NUMBERS = {
     'unshare': 272,
     'setns': 308,
 }
-"""What building a sandbox needs beyond what Docker's default profile allows, on x86-64."""
+"""System calls that a sandbox needs and Docker's default profile refuses: x86-64 numbers."""
 _NEW = {
     'user': 0x10000000,
     'mount': 0x20000,
@@ -40,17 +40,17 @@ _IMPOSSIBLE: dict[str, tuple[int, ...]] = {
     'mount': (0, 0, _NOWHERE, 0, 0),
     'umount2': (0, _NO_SUCH_FLAGS),
 }
-"""By system call: arguments that end with EINVAL, EBADF or EFAULT, whoever asks."""
+"""By system call: arguments for which Linux returns EINVAL, EBADF or EFAULT to any caller."""
 _libc = ctypes.CDLL(None, use_errno=True)
 _libc.syscall.restype = ctypes.c_long
 
 
 class BlockedError(Exception):
-    """A step that fails: its name, and the error's."""
+    """A step of building a sandbox failed; the arguments are its name and the error's name."""
 
 
 def main() -> int:
-    """Print the step that fails and the error's name, or nothing; return the exit status."""
+    """Print the failing step and the error's name, or nothing; return the exit status."""
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]  # it is a text file
     try:
         for name, arguments in _IMPOSSIBLE.items():
@@ -63,7 +63,7 @@ def main() -> int:
 
 
 def call(name: str, *arguments: int | bytes | None) -> int:
-    """Make a system call; return its error's number, or 0."""
+    """Make a system call; return its errno, or 0."""
     words = [ctypes.c_long(each) if isinstance(each, int) else each for each in arguments]
     done = _libc.syscall(ctypes.c_long(NUMBERS[name]), *words)
     return ctypes.get_errno() if done < 0 else 0
@@ -88,7 +88,7 @@ def _build() -> None:
     _step('filter sethostname', call('sethostname', b'room', 4))
     number = call('pivot_root', _NOWHERE, _NOWHERE)
     _step('filter pivot_root', 0 if number == errno.EFAULT else number)
-    _in_a_child(_mount_proc)  # the first process of the new process namespace
+    _in_a_child(_mount_proc)  # it is the first process of the new PID namespace
 
 
 def _mount_proc() -> None:
@@ -106,7 +106,7 @@ def _step(name: str, number: int) -> None:
 
 
 def _in_a_child(work: Callable[[], None]) -> None:
-    """Do it in a child, which may end as it likes; raise what it raised."""
+    """Run `work` in a child process; raise the BlockedError that it raised there."""
     reading, writing = os.pipe()
     if not (child := os.fork()):
         status = 0
@@ -114,7 +114,7 @@ def _in_a_child(work: Callable[[], None]) -> None:
             work()
         except BlockedError as blocked:
             os.write(writing, '\n'.join(blocked.args).encode())
-        except BaseException:  # the parent's stack is not the child's
+        except BaseException:  # the child must not continue with its parent's code
             sys.excepthook(*sys.exc_info())
             status = 1
         finally:

@@ -1,4 +1,4 @@
-"""The commands that build a sandbox: its holder, and the rooms beside it."""
+"""The commands that build a sandbox: the holder's, and those of its rooms."""
 
 import os
 import sys
@@ -15,14 +15,14 @@ from grader.sandbox.limits import (
 
 ROOMS = ('student', 'test')
 INSIDE = Path('/room')
-"""Where a room finds what is its own."""
+"""The folder inside a room that contains the room's own files."""
 FIRST_USER = 1_879_048_192
-"""Users from here on are nobody's, says systemd."""
+"""The lowest user ID for slots: systemd's list of ID ranges leaves those from here on unused."""
 KEEPER = ['sh', '-c', "trap '' CHLD; echo; exec sleep infinity >/dev/null 2>&1"]
-"""Keeps a room that is built, says so, and leaves no orphan a zombie."""
+"""Keeps a room open: prints an empty line when it is built, and leaves no orphan a zombie."""
 
 _SEEN, DISKS = '/tmp/seen', '/tmp/disks'
-"""Where the holder keeps what the rooms see of the machine, and what they write to."""
+"""Where the holder mounts what rooms see of the machine, and the disks that they write to."""
 _TERMINALS = f'newinstance,ptmxmode=0666,mode=620,max={ROOM_TERMINALS}'
 _HOLD = f"""
 for room in {' '.join(ROOMS)}; do
@@ -38,11 +38,11 @@ ENVIRONMENT = {
     'PATH': f'{sys.prefix}/bin:/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin',
     'AMENT_PREFIX_PATH': sys.prefix,
     'MPLCONFIGDIR': f'{INSIDE}/home/matplotlib',
-    # shared memory does not cross from one room to the other
+    # shared memory of one room is not visible in the other
     'FASTDDS_BUILTIN_TRANSPORTS': 'UDPv4',
-    # LOCALHOST would bring it back; the network ends with this submission anyway
+    # LOCALHOST would use shared memory again; the network is private to this submission anyway
     'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET',
-    # memory that is asked for counts, used or not
+    # the limits count memory that a process asks for, used or not
     'MALLOC_ARENA_MAX': '2',
     'OPENBLAS_NUM_THREADS': '1',
 }
@@ -59,9 +59,9 @@ ACCOUNTS = {'passwd': _USER, 'group': 'student:x:1000:\n', 'hosts': '127.0.0.1 l
 
 
 def holder_command(user: int | None, given: dict[str, Path]) -> list[str]:
-    """Return the command of the holder: it prints its process ID when network and disks are there.
+    """Return the holder's command: it prints its process ID when network and disks are ready.
 
-    `given` names for each room the folder that it is shown. It ends with its standard input.
+    `given` has the folder that each room is shown. The holder ends when its standard input closes.
     """
     seen = [
         '--tmpfs', '/tmp', '--dir', _SEEN,
@@ -75,7 +75,7 @@ def holder_command(user: int | None, given: dict[str, Path]) -> list[str]:
     hold = [*disks, *_NETWORK, '--', 'sh', '-c', _HOLD]
     if user is None:
         return [*_MACHINE, *seen, *hold]
-    # root first makes reachable what its own slots may not reach, then becomes one of them
+    # root first mounts what a slot's user can't reach, then becomes that user
     become = ['--cap-add', 'CAP_SETUID', '--cap-add', 'CAP_SETGID', '--', *_drop(user)]
     return [*_MACHINE, *seen, *become, *_MACHINE, *hold]
 
@@ -89,11 +89,11 @@ def room_command(
     info_fd: int | None = None,
     counted: bool = True,
 ) -> list[str]:
-    """Return how a command begins that runs in a room.
+    """Return the beginning of a command that runs in a room.
 
     `holder` is the holder's process ID, `seccomp` the file descriptor of a filter. With an
-    `info_fd`, the command is the room's first process, and its ID is written there.
-    Unless a cgroup has what it uses `counted`, there is no /dev/zero, which makes memory to share.
+    `info_fd`, the command is the room's first process, and its ID is written there. Unless a
+    cgroup counts the room's memory (`counted`), there is no /dev/zero: mapping it shares memory.
     """
     first = [] if info_fd is None else ['--as-pid-1', '--info-fd', str(info_fd)]
     disk = f'{DISKS}/{room}'
@@ -102,7 +102,7 @@ def room_command(
         accounts += ['--symlink', f'{INSIDE}/given/{name}', f'/etc/{name}']
     enter = ['nsenter', '--target', str(holder), '--user', '--net', '--mount']
     return [
-        # before the room: there /proc is read-only, else a student would take it back
+        # set before the room: /proc is read-only there, so student code can't change it back
         'choom', '-n', str(OUT_OF_MEMORY_SCORE), '--',
         *_drop(user),
         *enter, '--preserve-credentials', '--',
@@ -121,7 +121,7 @@ def room_command(
         '--remount-ro', '/dev',
         '--remount-ro', '/',
         '--chdir', f'{INSIDE}/home/work',
-        '--unsetenv', 'JPY_PARENT_PID',  # a kernel that does not find its parent ends
+        '--unsetenv', 'JPY_PARENT_PID',  # a kernel that can't find this parent would exit
         '--seccomp', str(seccomp),
         '--', *limited(),
     ]  # fmt: skip
@@ -134,17 +134,17 @@ def _drop(user: int | None) -> list[str]:
 
 
 def slot_user(slot: int) -> int | None:
-    """Return the user that root becomes for a slot; None where we are no root, or root alone."""
+    """Return the user ID that root takes for a slot; None if not root, or if it has no others."""
     first, mapped = _mapped_users()
     if os.geteuid() != 0 or mapped <= slot:
         return None
     if first + mapped > FIRST_USER + slot:
         return FIRST_USER + slot
-    return first + mapped - 1 - slot  # in a container: the last ones that there are
+    return first + mapped - 1 - slot  # in a container: count down from its last user ID
 
 
 def _mapped_users() -> tuple[int, int]:
-    """Return the first of the longest range of users of this user namespace, and its length."""
+    """Return the first ID of this user namespace's longest range of user IDs, and its length."""
     ranges = [line.split() for line in Path('/proc/self/uid_map').read_text().splitlines()]
     first, _, count = max(ranges, key=lambda each: int(each[2]))
     return int(first), int(count)

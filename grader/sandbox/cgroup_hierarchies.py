@@ -1,8 +1,8 @@
-"""Where this process may make cgroups: in version 2 of them, or in version 1 where that is used.
+"""Where this process may make cgroups: in version 2, or in version 1 where that is used.
 
-In version 2 a cgroup that has others in it holds no processes. So graders move into one of their
-own, GRADERS, beside those that they make. That is done only where the tree is given to us: by
-systemd's delegation (`scoped` asks for it), in a container, or to root where no systemd rules.
+In version 2 a cgroup that has child cgroups must not contain processes. So graders move into a
+cgroup of their own, GRADERS, beside those that they make. They do so only in a tree that is theirs
+to use: delegated by systemd (`scoped` asks for it), in a container, or as root without systemd.
 """
 
 import contextlib
@@ -18,35 +18,35 @@ from grader.sandbox.systemd_scopes import SYSTEMD, UNIT, has_scopes, scope_comma
 GRADERS = 'mrb-graders'
 """The cgroup that graders move into."""
 NEEDED, WANTED = ('memory', 'pids'), ('memory', 'pids', 'cpu')
-"""The controllers without which a cgroup is of no use, and those that we use."""
+"""The controllers that we can't do without, and all that we use."""
 COUNTS = 'cpuacct'
-"""Counts the time of processors in version 1; in version 2 every cgroup does."""
+"""The controller that counts CPU time in version 1; in version 2 every cgroup counts it."""
 GRADERS_WEIGHT = 1_000
-"""Of the processor, beside 200 of a sandbox: the grader must answer however many run."""
+"""cpu.weight of the graders; a sandbox has 200. The grader must answer however many run."""
 
 _MOVES = 10
 
 
 class NoCgroups(Exception):
-    """Why no cgroup can be made here, in a sentence."""
+    """Why cgroups can't be made here, in a sentence."""
 
 
 @dataclass(frozen=True)
 class Hierarchies:
-    """Where cgroups can be made: the folder for each controller; in version 2 it is the same."""
+    """Where cgroups can be made: a folder for each controller, all the same in version 2."""
 
     version: int
     folders: dict[str, Path]
 
     def __str__(self) -> str:
-        """Return what the doctor says of it."""
+        """Return what `./course doctor` prints about it."""
         controllers = ', '.join(self.folders)
         said = f'version {self.version}: {controllers}; in {self.folders["memory"]}'
         return f'{said}; without what {uncounted} hold' if (uncounted := _uncounted()) else said
 
 
 def hierarchies() -> Hierarchies:
-    """Return where this process may make cgroups. Raises NoCgroups."""
+    """Return where this process may make cgroups. Raises NoCgroups if it may not."""
     found = _found(Path('/proc/self'))
     if isinstance(found, NoCgroups):
         raise found
@@ -54,9 +54,9 @@ def hierarchies() -> Hierarchies:
 
 
 def scoped(command: tuple[str, ...]) -> tuple[str, ...]:
-    """Return a command that runs where cgroups can be made, if systemd can give such a place.
+    """Return the command, run where cgroups can be made, if systemd can provide such a place.
 
-    That is a scope: it is started by `systemd-run`, as the user's own, and ends with the command.
+    That is a scope, which `systemd-run` starts for this user, and which ends with the command.
     """
     found = _found(Path('/proc/self'))
     return (
@@ -85,7 +85,7 @@ def _found(proc: Path) -> Hierarchies | NoCgroups:
 
 
 def _uncounted(command_line: Path = Path('/proc/cmdline')) -> str:
-    """Return whose memory Linux was told not to count when it was started."""
+    """Return which kinds of memory Linux was booted not to count; '' if it counts all."""
     found = re.findall(r'\bcgroup\.memory=(\S+)', command_line.read_text(errors='replace'))
     options = {option for each in found for option in each.split(',')}
     names = {'nosocket': 'sockets', 'nokmem': 'objects of the kernel'}
@@ -93,7 +93,7 @@ def _uncounted(command_line: Path = Path('/proc/cmdline')) -> str:
 
 
 def _folder(proc: Path, path: str, controller: str) -> Path:
-    """Return the folder of a cgroup. Raises NoCgroups where it is not mounted here."""
+    """Return the folder of a cgroup. Raises NoCgroups if it is not mounted here."""
     for folder in holds(proc, path, controller):
         return folder
     raise NoCgroups(f'the cgroup {path} is not mounted here')
@@ -108,7 +108,7 @@ def _writable(folders: dict[str, Path]) -> dict[str, Path]:
 
 
 def _version_2(own: Path, top: Path | None) -> Path:
-    """Return the folder beside whose processes ours can have cgroups, with its controllers on."""
+    """Return the folder in which graders and sandboxes get cgroups, with controllers enabled."""
     if own.name == GRADERS:
         folder = own.parent
     elif own == top or _delegated(own):
@@ -119,7 +119,7 @@ def _version_2(own: Path, top: Path | None) -> Path:
         raise NoCgroups(f'{own} is not ours to use: systemd has not delegated it')
     if not os.access(folder, os.W_OK | os.X_OK):
         raise NoCgroups(f'{folder} is not ours to use')
-    if folder == own and (folder / 'cgroup.type').exists():  # the root itself may hold processes
+    if folder == own and (folder / 'cgroup.type').exists():  # the top may have processes
         _move_to_graders(folder)
     _switch_on(folder)
     return folder
@@ -138,7 +138,7 @@ def _delegated(folder: Path) -> bool:
 def _move_to_graders(folder: Path) -> None:
     graders = folder / GRADERS
     graders.mkdir(exist_ok=True)
-    for _ in range(_MOVES):  # what starts meanwhile is in the old one
+    for _ in range(_MOVES):  # a process that is started meanwhile appears in the old cgroup
         processes = _words(folder / 'cgroup.procs')
         if not processes:
             return
@@ -149,7 +149,7 @@ def _move_to_graders(folder: Path) -> None:
 
 
 def _switch_on(folder: Path) -> None:
-    """Let cgroups in a folder have controllers. Raises NoCgroups, OSError."""
+    """Enable the controllers for cgroups in a folder. Raises NoCgroups, OSError."""
     there = _words(folder / 'cgroup.controllers')
     if lacking := [name for name in NEEDED if name not in there]:
         raise NoCgroups(f'{folder} has no controller for {" and ".join(lacking)}')
@@ -167,7 +167,7 @@ def _words(path: Path) -> list[str]:
 
 
 def main() -> None:
-    """Print where cgroups can be made; exit with why, where they can't."""
+    """Print where cgroups can be made; exit with the reason if they can't."""
     try:
         print(hierarchies())
     except NoCgroups as problem:

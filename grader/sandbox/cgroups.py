@@ -1,19 +1,19 @@
-"""A cgroup for each room: Linux itself counts what all of the room's processes use together.
+"""A cgroup for each room: Linux itself counts what all processes of the room use together.
 
-It counts memory that no process is seen to have, too: shared, of files in memory, and of the
-kernel's for pipes, sockets, semaphores. Each room has limits of its own, so none of what a student
-uses up is the test's. Where no cgroup can be had, `hierarchies` says why.
+It also counts memory that belongs to no single process: shared memory, files in memory, and the
+kernel's memory for pipes, sockets and semaphores. Each room has its own limits, so a student can't
+use up what the test needs. If cgroups can't be made, `hierarchies` raises the reason.
 
-To know why a kernel ended, ask its room, while the sandbox is open or afterwards:
+To find out why a kernel ended, ask its room, while the sandbox is open or afterwards:
 
-    cgroup = sandbox.cgroup('student')      # None where this machine gives us none
+    cgroup = sandbox.cgroup('student')      # None if this machine offers no cgroups
     cgroup.memory_limit_bytes               # what all its processes may use together
     events = cgroup.memory_events()
-    events.killed                           # processes of the room that were killed for memory…
-    events.limit_reached                    # …because of its own limit, if this is true
+    events.killed                           # how many of its processes were killed for memory
+    events.limit_reached                    # whether the room's own limit was the cause
 
-`killed` without `limit_reached` is memory that ran out elsewhere: in the machine, or in the
-container around the grader. After the sandbox they stay as they were last.
+`killed` without `limit_reached` means that memory ran out elsewhere: on the machine, or in the
+container around the grader. When the sandbox is closed, the last values are kept.
 """
 
 import contextlib
@@ -28,11 +28,11 @@ from grader.sandbox.cgroup_hierarchies import Hierarchies, hierarchies
 from grader.sandbox.limits import CPU_WEIGHT, ROOM_MEMORY_BYTES, ROOM_PROCESSES, ROOM_SOCKET_BYTES
 
 _KEEPERS = 16
-"""Processes of a room that are ours: they keep it."""
+"""Processes in a room that are not the student's, but keep the room open."""
 _ROUNDING_BYTES = 2**20
-"""Version 1 tells the most that was used; each processor takes some pages in advance."""
+"""Tolerance when version 1's highest use is compared with the limit: CPUs reserve pages ahead."""
 _SHARES = 1_024
-"""Of the processor in version 1, for a weight of 100 in version 2."""
+"""cpu.shares of version 1 that correspond to cpu.weight 100 of version 2."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,13 @@ class RoomCgroup:
         return tuple(dict.fromkeys(path / 'cgroup.procs' for path in self.folders.values()))
 
     def memory_events(self) -> MemoryEvents:
-        """Return how often memory ran out, as last seen where the cgroup is gone already."""
+        """Return whether memory ran out; the last values seen if the cgroup was removed."""
         with contextlib.suppress(FileNotFoundError):
             self._events = self._read_events()
         return self._events
 
     def cpu_sec(self) -> float | None:
-        """Return how long its processes have kept processors busy; None where nobody counts."""
+        """Return the CPU time in s that its processes have used; None if it is not counted."""
         with contextlib.suppress(OSError):
             if self.version == 2:
                 return _numbers(self.folders['memory'] / 'cpu.stat')['usage_usec'] / 1e6
@@ -75,13 +75,13 @@ class RoomCgroup:
         return None
 
     def make(self) -> None:
-        """Make it, with its limits. Raises OSError."""
+        """Make the cgroup, with its limits. Raises OSError."""
         for path in dict.fromkeys(self.folders.values()):
             path.mkdir()
         for controller, settings in _limits(self.version, self.memory_limit_bytes).items():
             for name, value in settings.items() if controller in self.folders else ():
                 file = self.folders[controller] / name
-                if file.exists():  # swap, and version 1's own count of sockets, may be left out
+                if file.exists():  # there may be none for swap, or for sockets in version 1
                     file.write_text(str(value), encoding='ascii')
 
     def _read_events(self) -> MemoryEvents:
@@ -98,7 +98,7 @@ class SandboxCgroups:
     """The cgroups of a sandbox: make() first, remove() when all of its processes have ended."""
 
     def __init__(self, name: str, rooms: Iterable[str]) -> None:
-        """Prepare, by a name that nobody else on this machine uses. Raises NoCgroups."""
+        """Prepare cgroups with a name that is unique on this machine. Raises NoCgroups."""
         where = hierarchies()
         self.name = name
         self._where = Hierarchies(where.version, {k: f / name for k, f in where.folders.items()})
@@ -113,11 +113,11 @@ class SandboxCgroups:
 
     @property
     def folders(self) -> list[Path]:
-        """The folders that hold all of it."""
+        """The folders that contain the cgroups of all rooms."""
         return list(dict.fromkeys(self._where.folders.values()))
 
     def make(self) -> None:
-        """Make those of all rooms. Raises OSError."""
+        """Make the cgroups of all rooms. Raises OSError."""
         for folder in self.folders:
             folder.mkdir()
             if self._where.version == 2:
@@ -130,7 +130,7 @@ class SandboxCgroups:
             room.make()
 
     def remove(self) -> bool:
-        """End what is left in them, and remove them; return whether they are gone."""
+        """Kill what still runs in the cgroups, and remove them; return whether they are gone."""
         for room in self.rooms.values():
             room.memory_events()
         gone = [remove_cgroup(folder) for folder in self.folders]
@@ -146,33 +146,33 @@ def joining(cgroup: RoomCgroup | None) -> list[str]:
 
 
 def remove_cgroup(folder: Path) -> bool:
-    """End all processes in a cgroup and in those below it; return whether it could be removed.
+    """Kill all processes in a cgroup and below; return whether the cgroup could be removed.
 
-    A killed process takes a moment to leave: call it again until it is gone.
+    A killed process takes a moment to leave: call it again until it returns True.
     """
     with contextlib.suppress(FileNotFoundError):
         for below in [path for path in folder.iterdir() if path.is_dir()]:
             remove_cgroup(below)
         _kill_all(folder)
-        with contextlib.suppress(OSError):  # busy: somebody has not left yet
+        with contextlib.suppress(OSError):  # EBUSY: a process has not left yet
             folder.rmdir()
     return not folder.exists()
 
 
 def _kill_all(folder: Path) -> None:
     for pid in map(int, (folder / 'cgroup.procs').read_text('ascii').split()):
-        if pid > 0:  # 0 is in another PID namespace, and would be all of ours
+        if pid > 0:  # 0 is a process of another PID namespace; kill(0) would kill our own group
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
 
 
 def _limits(version: int, memory_bytes: int) -> dict[str, Mapping[str, object]]:
-    """Return what is written into the files of each controller."""
+    """Return what is written into which files, by controller."""
     if version == 1:
         memory = {
             'memory.limit_in_bytes': memory_bytes,
             'memory.memsw.limit_in_bytes': memory_bytes,
-            'memory.kmem.tcp.limit_in_bytes': ROOM_SOCKET_BYTES,  # of all sockets, counted aside
+            'memory.kmem.tcp.limit_in_bytes': ROOM_SOCKET_BYTES,  # counted separately
         }
     else:
         memory = {'memory.max': memory_bytes, 'memory.swap.max': 0}
@@ -184,7 +184,7 @@ def _limits(version: int, memory_bytes: int) -> dict[str, Mapping[str, object]]:
 
 
 def _weight(version: int, weight: int) -> tuple[str, str]:
-    """Return the name and the text of the file that says how much of the processor is due."""
+    """Return the file that sets a cgroup's share of the processor, and what to write there."""
     return (
         ('cpu.shares', str(weight * _SHARES // 100))
         if version == 1

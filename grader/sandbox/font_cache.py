@@ -7,7 +7,7 @@ from pathlib import Path
 def font_cache() -> str:
     """Return the same as matplotlib.get_cachedir().
 
-    Where that would have to be made, or is not to be written to, matplotlib says what else to do.
+    If that folder does not exist or is read-only, matplotlib itself is imported and asked.
     """
     named = os.environ.get('MPLCONFIGDIR')
     base = os.environ.get('XDG_CACHE_HOME')
@@ -16,7 +16,7 @@ def font_cache() -> str:
         folder = folder.resolve()
         if folder.is_dir() and os.access(folder, os.W_OK):
             return str(folder)
-    except (OSError, RuntimeError):  # a loop of links, or no home
+    except (OSError, RuntimeError):  # a loop of links, or no home folder
         pass
     import matplotlib
 

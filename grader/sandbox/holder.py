@@ -1,4 +1,4 @@
-"""The process that holds a sandbox's network and disks, and whatever else has that network."""
+"""The process that holds a sandbox's network and disks, and the processes in that network."""
 
 import asyncio
 import contextlib
@@ -15,15 +15,15 @@ OPEN_TIMEOUT_SEC = 30.0
 
 
 class Holder:
-    """One such process: start() first; end() and close() last, whatever happens between."""
+    """A sandbox's holder: start() first; end() and close() last, whatever happens between."""
 
     def __init__(self, user: int | None, given: dict[str, Path]) -> None:
-        """Prepare one for a slot's user; `given` names for each room the folder it is shown."""
+        """Prepare a holder for a slot's user; `given` has the folder that each room is shown."""
         self._user, self._given = user, given
         self._process: subprocess.Popen[bytes] | None = None
         self._network = -1
         self.pid = 0
-        """Its process ID as we know it; set by start()."""
+        """The holder's process ID, as seen from outside the sandbox; set by start()."""
 
     async def start(self) -> None:
         """Make the network and the disks. Raises RoomFailure."""
@@ -55,19 +55,19 @@ class Holder:
         self._network = os.open(f'/proc/{self.pid}/ns/net', os.O_RDONLY)
 
     def pids(self) -> Iterator[int]:
-        """Yield the processes that have this sandbox's network."""
+        """Yield the IDs of the processes that are in this sandbox's network namespace."""
         if self._network < 0:
             return
         ours = os.fstat(self._network)
         for name in os.listdir('/proc'):
             if name.isdigit():
-                # other users' are not ours; others end while we look
+                # other users' processes can't be read, and are not ours; others end while we look
                 with contextlib.suppress(OSError):
                     if os.path.samestat(os.stat(f'/proc/{name}/ns/net'), ours):
                         yield int(name)
 
     async def end(self) -> None:
-        """End it and all that has its network, and wait until they have gone."""
+        """Kill the holder and all processes in its network; wait until they are gone."""
         if self._process is None:
             return
         _kill(self._process)
@@ -83,7 +83,7 @@ class Holder:
                 pipe.close()
 
     def close(self) -> None:
-        """Let go of the network; nothing is known of the process any more."""
+        """Close the network namespace, and forget the process."""
         if self._network >= 0:
             os.close(self._network)
         self._process, self._network = None, -1

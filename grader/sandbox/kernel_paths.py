@@ -1,4 +1,4 @@
-"""Where a kernel lives: its folders, what its process is told, and how its command begins."""
+"""A kernel's place: its folders, the environment of its process, the start of its command."""
 
 import json
 import os
@@ -11,13 +11,13 @@ from pathlib import Path
 from grader.sandbox.temporary_folders import own_folder
 
 _PASSED_ON: tuple[str, ...] = ('LANG', 'LC_ALL', 'TZ')
-# the ROS wheels start an interpreter anew to set the one, unless they find the other
+# without the second, the ROS wheels restart the interpreter to set the first
 _PASSED_ON += ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
 _ALWAYS = {
     'MPLBACKEND': 'module://matplotlib_inline.backend_inline',
     'PYTHONSAFEPATH': '1',
     'PYTHONDONTWRITEBYTECODE': '1',
-    # a set of texts has one order then, in every grading: {'joint1', 'joint2'} begins with joint2
+    # fixes the order of a set of strings in every grading: {'joint1', 'joint2'} begins with joint2
     'PYTHONHASHSEED': '3',
 }
 
@@ -35,68 +35,68 @@ runpy.run_module('ipykernel_launcher', run_name='__main__', alter_sys=True)
 
 @dataclass(frozen=True)
 class Keeper:
-    """A process that keeps a room, so that one which was forked elsewhere can join it there."""
+    """A process that keeps a room open, so that a process forked elsewhere can join the room."""
 
     command: tuple[str, ...]
-    """Says a line when the room is built."""
+    """It prints a line when the room is built."""
     pass_fds: tuple[int, ...]
     info_fd: int
-    """The file descriptor where bubblewrap tells about it."""
+    """The file descriptor to which bubblewrap writes the first process's ID."""
     user: int | None
-    """Whom root becomes before it joins."""
+    """The user ID that root takes before it joins; None if it keeps its own."""
     entrances: tuple[Path, ...] = ()
-    """Where it joins the room's cgroup, before all else."""
+    """The files through which a process joins the room's cgroup, before anything else."""
 
 
 @dataclass(frozen=True)
 class KernelPaths:
-    """Where one kernel lives: what it is `given`, its sockets in `kernel`, its own in `home`."""
+    """One kernel's folders: `given` is for it to read, `kernel` for sockets, `home` its own."""
 
     folder: Path
-    """The grader's folder for it; it holds `given`."""
+    """The grader's folder for this kernel; it contains `given`."""
     sockets: Path
-    """The kernel's sockets as the grader reaches them."""
+    """The folder through which the grader reaches the kernel's sockets."""
     inside: Path
-    """What holds `given`, `kernel` and `home`, as the kernel's process knows it."""
+    """The folder of `given`, `kernel` and `home`, as the kernel's process sees it."""
     prefix: tuple[str, ...] = ()
-    """How a command begins that runs there."""
+    """The beginning of a command that runs in the room; empty without a sandbox."""
     environment: dict[str, str] = field(default_factory=dict)
-    """What its process is told, beside what every kernel is."""
+    """Variables for the kernel's process, in addition to those that every kernel has."""
     pass_fds: tuple[int, ...] = ()
-    """What `prefix` reads."""
+    """File descriptors that `prefix` reads."""
     made: Path | None = None
-    """Where a room's kernel makes its sockets, and may make something else of them later."""
+    """Where a sandboxed kernel creates its sockets; student code can replace them later."""
     keeper: Keeper | None = None
-    """Where a forked kernel can join."""
+    """What keeps the room open, so that a forked kernel can join it."""
 
     @property
     def sandboxed(self) -> bool:
-        """Whether what runs there has neither the rights nor the network of the grading user."""
+        """Whether the kernel has neither the rights nor the network of the grading user."""
         return bool(self.prefix)
 
     @property
     def files(self) -> Path:
-        """The folder of modules that are given to it."""
+        """The folder of Python modules that the kernel is given."""
         return self.folder / 'given' / 'files'
 
     @property
     def packages(self) -> Path:
-        """The folder of ROS packages that are given to it."""
+        """The folder of ROS packages that the kernel is given."""
         return self.folder / 'given' / 'packages'
 
     def kernel_command(self) -> list[str]:
-        """Return the command of a kernel, as its process knows it."""
+        """Return the kernel's command, with paths as the kernel's process sees them."""
         launcher = [sys.executable, '-c', _LAUNCHER, '-f']
         options = ['--InteractiveShellApp.ignore_cwd=True', '--HistoryManager.enabled=False']
         connection = str(self.inside / 'given' / 'connection.json')
         return [*launcher, connection, *options]
 
     def command(self) -> list[str]:
-        """Return the command of a kernel that lives there."""
+        """Return the whole command that starts a kernel in the room."""
         return [*self.prefix, *self.kernel_command()]
 
     def write_connection_file(self, connection_file: Path) -> None:
-        """Write the kernel's own connection file: it may know its sockets by another path."""
+        """Write the kernel's own connection file, with the path at which it sees its sockets."""
         connection = json.loads(connection_file.read_text(encoding='utf-8'))
         connection['ip'] = str(self.inside / 'kernel' / 'zmq')
         inside = self.folder / 'given' / 'connection.json'
@@ -108,7 +108,7 @@ class KernelPaths:
 
 
 def make_folder(name: str) -> Path:
-    """Make a temporary folder that nobody else can enter, with an empty `given` in it."""
+    """Make a temporary folder that other users can't enter, with an empty `given` in it."""
     folder = Path(tempfile.mkdtemp(prefix=f'{name}-', dir=own_folder()))
     (folder / 'given' / 'files').mkdir(parents=True)
     (folder / 'given' / 'packages').mkdir()
@@ -126,7 +126,7 @@ def make_paths(room: str) -> KernelPaths:
 
 
 def passed_on() -> dict[str, str]:
-    """Return what every Python of the grader's is told, wherever it lives."""
+    """Return the variables that every Python process of the grader gets, in a room or not."""
     environment = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
     return environment | _ALWAYS
 
@@ -134,9 +134,9 @@ def passed_on() -> dict[str, str]:
 def environment_of(
     paths: KernelPaths, *, room: str, domain_id: int, seed: str = ''
 ) -> dict[str, str]:
-    """Return what a kernel's process is told: nothing of the caller's own, but where things are.
+    """Return a kernel's environment: nothing private of the caller's, but where files are.
 
-    Only the test room is told the seed.
+    Only the test room gets the seed.
     """
     home = paths.inside / 'home'
     environment = passed_on()

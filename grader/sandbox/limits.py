@@ -1,80 +1,80 @@
-"""What a submission may use up, and why so much; a cell's limits are those of Validate, too."""
+"""What a submission may use, and why so much; a cell's limits are in `validate/limits.py`."""
 
 import resource
 
 SUBMISSION_TIMEOUT_SEC = 1_800.0
-"""Each part of a submission has a limit of its own; this one bounds all of it."""
+"""For all of a submission; each part of it has a shorter limit of its own."""
 
 MAX_REASON_CHARACTERS = 20_000
-"""Of one reason; a check's own are a line or two, and an error's text is cut at half of that."""
+"""For one reason; a check's own are a line or two, and an error's text is cut at half of this."""
 MAX_NOTES, MAX_NOTE_CHARACTERS = 1_000, 2_000
-"""What is reported about one check, or about how a notebook was restored."""
+"""Notes on one check, or on how a notebook was restored, and the length of each."""
 MAX_TASK_BYTES = 100_000_000
-"""A notebook that is to be graded as JSON, with its pasted pictures and files."""
+"""Of a task as JSON: a notebook to be graded, with its pasted pictures and files."""
 MAX_RESULT_BYTES = 100_000_000
-"""A graded notebook as JSON: its text, pasted pictures, and outputs within their own limits."""
+"""Of a graded notebook as JSON: its text, pasted pictures, and outputs within their limits."""
 MAX_RESULT_PARTS = 200_000
-"""Objects and lists in it: one takes 200 times what it takes as text. A lesson: some 500."""
+"""Objects and lists in a result: each takes 200 times its text's memory. A lesson has some 500."""
 
 ROOM_MEMORY_BYTES = 2 * 2**30
-"""All processes of a room together; the kernel of a lesson uses 0.15 GB."""
+"""For all processes of a room together; the kernel of a lesson uses 0.15 GB."""
 ROOM_SOCKET_BYTES = 256 * 2**20
-"""What waits in a room's sockets, where Linux counts that aside; a lesson: under 1 MB."""
+"""For data waiting in a room's sockets, if Linux counts it separately; a lesson: under 1 MB."""
 ROOM_TERMINALS = 32
-"""Pseudo-terminals, one for each command after a `!`: the machine has some thousands for all."""
+"""Pseudo-terminals, one for each `!` command that runs: the whole machine has some thousands."""
 ROOM_PROCESSES = 256
-"""Processes and threads of a room together; a lesson: some 60."""
+"""Processes and threads of a room together; a lesson has some 60."""
 CPU_WEIGHT = 100
-"""What each room may have of the processor beside the other one, and a sandbox twice that beside
-others: however many processes a student starts, the test's kernel has its half."""
+"""cpu.weight of each room; a sandbox has twice that. So the test's kernel gets its half of the
+processor, however many processes a student starts."""
 ROOM_DISK_BYTES = 64 * 2**20
-"""All that a room can write, on a file system in memory: logs, caches and plots take 2 MB."""
+"""All that a room can write, to a file system in memory: logs, caches and plots take 2 MB."""
 ROOM_FILES = 8_192
-"""Files and folders in it: each takes memory that its size does not tell."""
+"""Files and folders in a room: each takes memory in addition to its content."""
 
 SUBMISSION_MEMORY_BYTES = 600 * 2**20
-"""Set aside for each submission that is in flight; the two kernels of a lesson use half of it."""
+"""Set aside for each submission in flight; the two kernels of a lesson use half of it."""
 IN_FLIGHT_EACH = 2
-"""How many a worker process grades at a time, memory permitting: most of each is waiting."""
+"""How many submissions a worker grades at a time, if memory allows: each mostly waits."""
 MOST_IN_FLIGHT_EACH = 5
-"""How many where processors stand idle all the same. Where they are short, nodes follow the
-robot's clock too slowly, and are judged on the wall clock."""
+"""The same, if processors are idle nevertheless. If processors are short, nodes follow the
+simulated clock too slowly, and are judged on the wall clock."""
 MOST_IN_FLIGHT = 60
-"""No more than so many in all, unless there are that many to begin with: each needs a ROS domain,
+"""The most in all, unless there are more workers than that: each submission needs a ROS domain,
 and a machine has 101."""
 IDLE_SHARE, BUSY_SHARE = 0.5, 0.75
-"""The part of the time in which some process had to wait for a processor: below the first there is
-room for more submissions, above the second there are too many."""
+"""The share of time in which a process had to wait for a processor: below the first, more
+submissions are graded at a time, above the second fewer."""
 
 _RLIMIT_LOCKS = 10  # Python has no name for it
 PROCESS_LIMITS = {
-    resource.RLIMIT_AS: 3 * 2**30,  # of each process, asked for or used; a lesson: under 1 GB
-    resource.RLIMIT_DATA: 3 * 2**30,  # is a part of that
-    resource.RLIMIT_STACK: 8 * 2**20,  # of each thread: what a login has
+    resource.RLIMIT_AS: 3 * 2**30,  # of each process, reserved or used; a lesson: under 1 GB
+    resource.RLIMIT_DATA: 3 * 2**30,  # a part of RLIMIT_AS
+    resource.RLIMIT_STACK: 8 * 2**20,  # of each thread: as in a login session
     resource.RLIMIT_NPROC: ROOM_PROCESSES,
-    resource.RLIMIT_CPU: 300,  # seconds of each process; nothing outlives its submission anyway
+    resource.RLIMIT_CPU: 300,  # seconds of each process; all end with their submission anyway
     resource.RLIMIT_FSIZE: ROOM_DISK_BYTES,  # no file can be larger than the disk
-    resource.RLIMIT_NOFILE: 1_024,  # what a login has; 30 nodes take 400
-    resource.RLIMIT_CORE: 0,  # nobody would look at it
-    resource.RLIMIT_MEMLOCK: 0,  # locked memory cannot be taken back
+    resource.RLIMIT_NOFILE: 1_024,  # as in a login session; 30 nodes take 400
+    resource.RLIMIT_CORE: 0,  # core dumps are never read
+    resource.RLIMIT_MEMLOCK: 0,  # locked memory cannot be reclaimed
     resource.RLIMIT_MSGQUEUE: 0,  # message queues outlive processes
-    resource.RLIMIT_SIGPENDING: 1_024,  # what waits is the kernel's memory; a lesson: none
-    resource.RLIMIT_RTPRIO: 0,  # a priority of real time keeps all others waiting
+    resource.RLIMIT_SIGPENDING: 1_024,  # they wait in the kernel's memory; a lesson: none
+    resource.RLIMIT_RTPRIO: 0,  # a real-time process would keep all others from running
     resource.RLIMIT_RTTIME: 0,
-    resource.RLIMIT_NICE: 0,  # nobody comes before others
-    resource.RLIMIT_RSS: 3 * 2**30,  # Linux does not look at this one, …
-    _RLIMIT_LOCKS: 1_024,  # … nor at this one
+    resource.RLIMIT_NICE: 0,  # no higher priority than other processes
+    resource.RLIMIT_RSS: 3 * 2**30,  # Linux does not enforce this limit
+    _RLIMIT_LOCKS: 1_024,  # nor this one
 }
-"""What Linux enforces in each process of a student's room: all that it has limits for."""
+"""What Linux enforces in each process of a student's room: a value for each of its limits."""
 OWN_FILES = 16_384
-"""What may be open in a process of ours."""
+"""How many files a process of the grader may have open."""
 
 OUT_OF_MEMORY_SCORE = 1_000
-"""Where the machine's memory runs out, Linux ends such processes before any other."""
+"""If the machine runs out of memory, Linux kills processes with this oom_score_adj first."""
 
 
 def process_limits() -> dict[int, int]:
-    """Return PROCESS_LIMITS; less where our own hard limit is less: nobody can raise that."""
+    """Return PROCESS_LIMITS, or our own hard limit if that is lower: it can't be raised."""
     limits = {
         kind: _allowed(most, resource.getrlimit(kind)[1]) for kind, most in PROCESS_LIMITS.items()
     }
@@ -84,10 +84,10 @@ def process_limits() -> dict[int, int]:
 
 
 def let_us_open_more() -> None:
-    """Raise our own limit of open files, as far as rooms can't get.
+    """Raise our own soft limit of open files above that of rooms.
 
-    Linux counts what is on its way through sockets by user, and that may be a room's user, too:
-    who has more under way than its own limit can send no file any more, no matter whose they are.
+    Linux counts files in flight over sockets by user, and a room may have the same user as we do:
+    a process whose user has more of them in flight than its own limit can't send files at all.
     """
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = OWN_FILES if hard == resource.RLIM_INFINITY else min(OWN_FILES, hard)

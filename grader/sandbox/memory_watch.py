@@ -1,4 +1,4 @@
-"""Keeps rooms within their memory where there are no cgroups: by looking twice a second."""
+"""Keep rooms within their memory if there are no cgroups, by checking twice a second."""
 
 import asyncio
 import contextlib
@@ -16,10 +16,10 @@ _OWN = re.compile(r'^Rss(?:Anon|Shmem):\s+(\d+) kB$', re.MULTILINE)
 
 
 async def watch_memory(pids: Callable[[], Iterable[int]], killed: set[int]) -> None:
-    """Keep all processes of each room within its memory: the largest ends first.
+    """Keep all processes of each room within its memory limit; kill the largest first.
 
-    `pids` returns the processes of all rooms; those that were ended for it are added to
-    `killed`. It goes on until it is cancelled.
+    `pids` returns the processes of all rooms. The IDs of those that were killed are added to
+    `killed`. It runs until it is cancelled.
     """
     while True:
         await asyncio.sleep(WATCH_EVERY_SEC)
@@ -37,6 +37,6 @@ async def watch_memory(pids: Callable[[], Iterable[int]], killed: set[int]) -> N
 
 
 def _own_memory(pid: int) -> int:
-    """Return the bytes that a process shares with no file; with other processes, perhaps."""
+    """Return a process's memory in bytes without mapped files; processes may share some of it."""
     status = Path(f'/proc/{pid}/status').read_text(encoding='utf-8', errors='replace')
     return 1_024 * sum(map(int, _OWN.findall(status)))

@@ -1,4 +1,4 @@
-"""What to do about a sandbox that cannot be built here: the block, and the least that opens it."""
+"""What prevents a sandbox on this machine, and the smallest change that allows it."""
 
 import os
 import platform
@@ -9,7 +9,7 @@ from pathlib import Path
 PROFILE = 'deploy/seccomp.json'
 CONTAINERS = 'docs/where-it-runs.md has the whole line'
 _SYS_ADMIN = 21
-"""The bit of CAP_SYS_ADMIN."""
+"""The number of the capability CAP_SYS_ADMIN, which is its bit in CapEff."""
 _APPARMOR = 'kernel/apparmor_restrict_unprivileged_userns'
 _SETTINGS = (
     (_APPARMOR, '1', '0'),
@@ -20,7 +20,7 @@ _SETTINGS = (
 
 
 def remedy() -> str:
-    """Return what stops a sandbox here, and what to do about it, in sentences."""
+    """Return what prevents a sandbox here, and what to do about it, in sentences."""
     step, _, error = _first_block().rpartition(' ')
     if step.startswith('filter '):
         return _about_a_filter(step.removeprefix('filter '), error)
@@ -52,7 +52,7 @@ def _first_block() -> str:
     """Return the first step of building a sandbox that fails, and its error; '' if none does."""
     command = [sys.executable, '-P', '-m', 'grader.sandbox.block_probe']
     tried = subprocess.run(command, capture_output=True, text=True)
-    if tried.returncode < 0:  # a filter that ends who asks
+    if tried.returncode < 0:  # a filter that kills the calling process
         return 'filter (it ended the process that asked) SIGSYS'
     return tried.stdout.strip()
 

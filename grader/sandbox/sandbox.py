@@ -1,7 +1,7 @@
-"""Two rooms that nothing gets out of: one network of their own, and a system for each.
+"""Two rooms that confine student code: they share a private network; each has its own system.
 
 A holder keeps the network and the rooms' disks while an exercise is judged. bubblewrap builds
-each room beside it, and everything in a room dies with its first process.
+each room beside it, and everything in a room ends with the room's first process.
 """
 
 import asyncio
@@ -38,7 +38,7 @@ class Sandbox:
     """The rooms of one exercise: open() first and close() last, whatever happens between."""
 
     def __init__(self, *, slot: int) -> None:
-        """Prepare; `slot` is a small number that nobody else on this machine uses meanwhile."""
+        """Prepare; `slot` is a small number that nothing else on this machine uses meanwhile."""
         let_us_open_more()
         self._user = slot_user(slot)
         self._watch: asyncio.Future | None = None
@@ -61,13 +61,13 @@ class Sandbox:
             self._watch = asyncio.ensure_future(watch_memory(self._holder.pids, self._killed))
 
     def cgroup(self, room: str) -> RoomCgroup | None:
-        """Return the cgroup of a room; None where this machine gives us none."""
+        """Return the cgroup of a room; None if this machine offers no cgroups."""
         return None if self._cgroups is None else self._cgroups.rooms[room]
 
     def memory_events(self, room: str) -> MemoryEvents:
-        """Return whether the memory of a room ran out, and what was ended for it.
+        """Return whether the memory of a room ran out, and how many processes were killed for it.
 
-        Without cgroups our own watch ends processes, and does not tell the rooms apart.
+        Without cgroups our own watch kills processes, and does not distinguish the rooms.
         """
         if cgroup := self.cgroup(room):
             return cgroup.memory_events()
@@ -123,7 +123,7 @@ class Sandbox:
                 ) from problem
 
     def _filter(self) -> int:
-        """Return a file with the filter of system calls: bubblewrap reads it up."""
+        """Return a file descriptor of the system call filter: bubblewrap reads it to its end."""
         seccomp = os.memfd_create('seccomp')
         self._files.append(seccomp)
         os.write(seccomp, seccomp_filter(counted=self._cgroups is not None))
@@ -131,7 +131,7 @@ class Sandbox:
         return seccomp
 
     async def close(self) -> None:
-        """End whatever still runs in it, and wait until it has gone."""
+        """Kill whatever still runs in the sandbox, and wait until it is gone."""
         try:
             async with asyncio.timeout(CLOSE_TIMEOUT_SEC):
                 if self._watch is not None:
@@ -150,7 +150,7 @@ class Sandbox:
 
     async def _remove_cgroups(self) -> None:
         if self._note is not None:
-            assert self._cgroups is not None  # the note is about them
+            assert self._cgroups is not None  # there is a note only if there are cgroups
             while not self._cgroups.remove():
                 await asyncio.sleep(0.005)
             self._note.unlink()

@@ -1,9 +1,8 @@
-"""The filter that Linux runs for each system call of a room: what is not allowed is not there.
+"""The seccomp filter of a room: a system call that it does not list ends with ENOSYS.
 
-What is unknown here ends with ENOSYS, as on a Linux too old to have it, so that the C library and
-Python take another way. Some that are allowed are looked at more closely, by their arguments.
-
-docs/decisions.md says why libseccomp does not write it.
+ENOSYS is what a Linux too old to have the call returns, so the C library and Python use another
+one. For some allowed calls, the filter also checks the arguments. docs/decisions.md says why
+libseccomp does not write it.
 """
 
 import struct
@@ -15,14 +14,14 @@ ENOSYS, EPERM, EAFNOSUPPORT = 38, 1, 97
 AF_UNIX, AF_INET, AF_INET6, AF_NETLINK = 1, 2, 10, 16
 PROTOCOLS = {
     AF_UNIX: (0, 1),
-    AF_INET: (0, 6, 17),  # the usual one, TCP, UDP: no MPTCP, SCTP or ICMP
+    AF_INET: (0, 6, 17),  # the default, TCP, UDP: not MPTCP, SCTP or ICMP
     AF_INET6: (0, 6, 17),
-    AF_NETLINK: (0,),  # NETLINK_ROUTE tells which network interfaces there are
+    AF_NETLINK: (0,),  # NETLINK_ROUTE lists the network interfaces
 }
-"""Sockets that stay, by family. Others, such as AF_VSOCK, know of no network namespace."""
+"""Protocols that are allowed, by family. Other families ignore network namespaces (AF_VSOCK)."""
 
 _ARCHITECTURE = 0xC000003E  # AUDIT_ARCH_X86_64
-_NAMESPACES = 0x7E020000  # the flags of clone that make new ones
+_NAMESPACES = 0x7E020000  # the flags of clone that make new namespaces
 _MAP_SHARED, _MAP_ANONYMOUS = 0x01, 0x20
 _KILL, _ERROR, _ALLOW = 0x80000000, 0x00050000, 0x7FFF0000
 _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
@@ -30,14 +29,14 @@ _NEW_LISTENER = 8
 _NUMBER_AT, _ARCHITECTURE_AT, _ARGUMENTS_AT = 0, 4, 16
 
 Instruction = tuple[int, int, int, int]
-"""What to do, how many to jump over where it is so and where not, and a number."""
+"""An opcode, how many instructions to skip if its test is true and if it is false, a number."""
 
 
 def seccomp_filter(*, counted: bool = True) -> bytes:
-    """Return the filter as `bwrap --seccomp` reads it: struct sock_filter, one after the other.
+    """Return the filter as `bwrap --seccomp` reads it: one struct sock_filter after another.
 
-    Unless what a room uses is `counted` by a cgroup, it gets no shared memory without a file:
-    that can be hidden from who looks at its processes.
+    Unless a cgroup counts the room's memory (`counted`), anonymous shared memory is refused: the
+    watch over its processes would not see all of it.
     """
     program: list[Instruction] = [
         (_LOAD, 0, 0, _ARCHITECTURE_AT),
@@ -74,7 +73,7 @@ def _pairs() -> list[Instruction]:
 
 
 def _one_of(values: tuple[int, ...] | list[int]) -> list[Instruction]:
-    """Allow what is loaded if it is one of these."""
+    """Allow the call if the loaded value is one of these."""
     tests = [(_EQUAL, len(values) - i, 0, value) for i, value in enumerate(values)]
     return [*tests, (_RETURN, 0, 0, _ERROR | EAFNOSUPPORT), (_RETURN, 0, 0, _ALLOW)]
 
@@ -85,7 +84,7 @@ def _no_namespaces() -> list[Instruction]:
 
 
 def _a_listener() -> list[Instruction]:
-    """Allow a filter with a listener: `signals` sets one, and Linux takes no second one."""
+    """Refuse a filter with a listener, which `signals` has set already: Linux takes only one."""
     refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
     return [_argument(1), (_EQUAL, 1, 0, _NEW_LISTENER), refused, fine]
 
@@ -97,12 +96,12 @@ def _no_hidden_memory() -> list[Instruction]:
 
 
 def _argument(number: int) -> Instruction:
-    """Load the lower half of an argument: Linux takes no more of those that we look at."""
+    """Load the lower 32 bits of an argument: Linux ignores the rest of those that we check."""
     return (_LOAD, 0, 0, _ARGUMENTS_AT + 8 * number)
 
 
 def _ranges(numbers: set[int]) -> list[tuple[int, int]]:
-    """Return the first and the last of each row of numbers without a gap."""
+    """Return the first and the last of each run of consecutive numbers."""
     firsts = sorted(number for number in numbers if number - 1 not in numbers)
     lasts = sorted(number for number in numbers if number + 1 not in numbers)
     return list(zip(firsts, lasts, strict=True))

@@ -1,18 +1,18 @@
-"""The filter of system calls that passes on to us what sends a signal in a room."""
+"""A seccomp filter that reports each system call that sends a signal in a room."""
 
 import signal
 import struct
 
-# number: the places of its target and of the signal among its arguments
+# number of the call: the positions of the target and of the signal among its arguments
 SENDING = {
     62: (0, 1),  # kill
-    200: (None, 1),  # tkill: names a thread, of any process
+    200: (None, 1),  # tkill: its target is a thread, of any process
     234: (0, 2),  # tgkill
     129: (0, 1),  # rt_sigqueueinfo
     297: (0, 2),  # rt_tgsigqueueinfo
-    424: (None, 1),  # pidfd_send_signal: names a file
+    424: (None, 1),  # pidfd_send_signal: its target is a file descriptor
 }
-"""Numbers of x86-64."""
+"""System call numbers of x86-64."""
 EXIT_GROUP, PRCTL = 231, 157
 _CLONE, _FCNTL, _PRLIMIT, _SETRLIMIT, _TIMER_CREATE = 56, 72, 302, 160, 222
 _SET_SIGNAL, _SET_OWNER, _SET_OWNER_OF = 10, 8, 15
@@ -40,15 +40,15 @@ for file in files:
 door.close()
 os.execv(sys.argv[3], sys.argv[3:])
 """
-"""What a kernel that is started runs first: it sends a pidfd of itself, and the listener."""
+"""A started kernel runs this first: it sends a pidfd of itself, and the filter's listener."""
 
 
 def signals_filter() -> bytes:
-    """Return a filter that passes on to a listener what sends a signal, or may have one sent."""
+    """Return a filter that notifies a listener of calls that send, or may cause, a signal."""
     program = [
         (_LOAD, 0, 0, _ARCHITECTURE_AT),
         (_EQUAL, 1, 0, _ARCHITECTURE),
-        (_RETURN, 0, 0, _ALLOW),  # another filter ends such processes
+        (_RETURN, 0, 0, _ALLOW),  # the other filter kills processes of another architecture
         (_LOAD, 0, 0, 0),
     ]
     for number in (*SENDING, _TIMER_CREATE):
@@ -58,7 +58,7 @@ def signals_filter() -> bytes:
     program += _where(PRCTL, 0, (_EQUAL, _SET_PARENT_DEATH_SIGNAL))
     for command in (_SET_SIGNAL, _SET_OWNER, _SET_OWNER_OF):
         program += _where(_FCNTL, 1, (_EQUAL, command))
-    program += [  # a child may announce its end by any signal; a process' is SIGCHLD, a thread's 0
+    program += [  # clone: a child's end may send any signal; usual are SIGCHLD, 0 for a thread
         (_EQUAL, 0, 6, _CLONE),
         (_LOAD, 0, 0, _ARGUMENT_AT[0]),
         (_AND, 0, 0, 0xFF),
@@ -67,7 +67,7 @@ def signals_filter() -> bytes:
         (_RETURN, 0, 0, _NOTIFY),
         (_LOAD, 0, 0, 0),
     ]
-    # bubblewrap tells a death by a signal as such a code
+    # bubblewrap exits with such a status when a signal ended its command
     program += _where(EXIT_GROUP, 0, (_GREATER, 128), mask=0xFF)
     program.append((_RETURN, 0, 0, _ALLOW))
     return b''.join(struct.pack('=HBBI', *instruction) for instruction in program)
@@ -76,7 +76,7 @@ def signals_filter() -> bytes:
 def _where(
     number: int, argument: int, test: tuple[int, int], *, mask: int = 0xFFFFFFFF
 ) -> list[tuple[int, int, int, int]]:
-    """Return what passes a call on where one of its arguments is as a test says."""
+    """Return instructions that notify the listener of a call if one argument passes a test."""
     kind, value = test
     return [
         (_EQUAL, 0, 5, number),

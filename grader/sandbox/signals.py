@@ -1,9 +1,9 @@
-"""Which signals the processes of a room send: Linux tells us of each before it is sent.
+"""Which signals the processes of a room send: Linux reports each to us before it is sent.
 
-How a process ended says which signal ended it, and not who sent that. Inside its room only a
-student's own processes can send it one, and they have to ask Linux for it: a filter of system
-calls passes each such call on to us, and it goes on when we have written it down. A death by a
-signal that nobody in the room has sent came from outside.
+A process's exit status says which signal ended it, but not who sent that signal. Inside a room,
+only the student's own processes can send one to them, by a system call. A filter notifies us of
+each such call, and the call goes on when we have recorded it. So if a signal ended a process, and
+no process in the room sent that signal, it came from outside.
 """
 
 import asyncio
@@ -17,9 +17,9 @@ from pathlib import Path
 from grader.sandbox.seccomp_notify import EXIT_GROUP, PRCTL, SENDING
 
 EVERYONE = 0
-"""Stands for any process that may be meant."""
+"""Means that any process may be the target."""
 _MOST = 4_096
-"""A process that sends more kinds of signals may have sent any."""
+"""If more different signals than this were recorded, any signal may have been sent."""
 
 _RECEIVE, _SEND = 0xC0502100, 0xC0182101
 """SECCOMP_IOCTL_NOTIF_RECV and _SEND."""
@@ -32,14 +32,14 @@ class Signals:
     """The signals that the processes of one room have sent."""
 
     def __init__(self, kernel: int, listener: int = -1) -> None:
-        """Take a pidfd of the kernel, to look at, and the listener of its filter, to close.
+        """Take a pidfd of the kernel, which stays open, and its filter's listener, closed later.
 
-        Where there is no listener nothing is known. To be made where an event loop runs.
+        Without a listener (-1) nothing is known. Create it in a running event loop.
         """
         self.pid = int(_field(Path(f'/proc/self/fdinfo/{kernel}'), 'Pid'))
-        """The kernel's, as the grader knows it."""
+        """The kernel's process ID, as the grader sees it."""
         self.exit_code: int | None = None
-        """What the kernel itself said at its end, if that looks like a signal."""
+        """The kernel's own exit code, if it is one that bubblewrap would use for a signal."""
         self._listener = listener
         self._sent: set[tuple[int, int]] = set()
         self._by_other_means = listener < 0
@@ -50,28 +50,28 @@ class Signals:
             self._loop.add_reader(listener, self._take)
 
     def explain(self, number: int, ids: tuple[int, int] | None = None) -> bool:
-        """Return whether somebody in the room sent a signal, or may have.
+        """Return whether a process in the room sent a signal, or may have sent it.
 
-        It counts where it went to a process, by its ID and that of its group as the room knows
-        them; by default the kernel.
+        Its target is a process, given by its ID and its group's ID inside the room; by default the
+        kernel.
         """
         pid, group = ids or self._ids
         targets = {(pid, number), (-group, number), (EVERYONE, number)}
         return self.known and (self._by_other_means or bool(targets & self._sent))
 
     def close(self) -> None:
-        """Listen no longer."""
+        """Stop listening, and close the listener."""
         if self._listener >= 0:
             self._loop.remove_reader(self._listener)
             os.close(self._listener)
             self._listener = -1
 
     def _take(self) -> None:
-        """Write down one call, and let it go on."""
+        """Record one call, and let it continue."""
         poll = select.poll()
         poll.register(self._listener, select.POLLIN)
         if not any(event & select.POLLIN for _, event in poll.poll(0)):
-            self._loop.remove_reader(self._listener)  # all processes that it watched have ended
+            self._loop.remove_reader(self._listener)  # all processes with this filter have ended
             return
         said = bytearray(_NOTIFICATION.size)
         try:
@@ -81,7 +81,7 @@ class Signals:
             fcntl.ioctl(self._listener, _SEND, _ANSWER.pack(number, 0, 0, _CONTINUE))
         except FileNotFoundError:  # the process that called has ended meanwhile
             pass
-        except OSError:  # all of them have
+        except OSError:  # all processes with this filter have ended
             self._loop.remove_reader(self._listener)
 
     def _note(self, sender: int, call: int, arguments: list[int]) -> None:
@@ -92,20 +92,20 @@ class Signals:
         if call not in (*SENDING, PRCTL) or len(self._sent) > _MOST:
             self._by_other_means = True
             return
-        if call == PRCTL:  # it wants a signal when its parent ends
+        if call == PRCTL:  # the sender asks for a signal when its parent ends
             self._sent.add((_ids(sender)[0], _signed(arguments[1])))
             return
         place, signal_place = SENDING[call]
         target = EVERYONE if place is None else _signed(arguments[place])
-        if target == 0:  # to the sender's process group
+        if target == 0:  # all of the sender's process group
             target = -_ids(sender)[1]
         self._sent.add((EVERYONE if target == -1 else target, _signed(arguments[signal_place])))
 
 
 def killed_processes(kernel: int) -> list[tuple[int, tuple[int, int]]]:
-    """Return what signal ended a process below a kernel, and its IDs in the room, of each.
+    """Return the signal that ended each process below a kernel, and the IDs it had in the room.
 
-    They are known while the process that started them has not asked how they ended.
+    They are known only until the parent process waits for the child.
     """
     found: list[tuple[int, tuple[int, int]]] = []
     todo = [kernel]
@@ -116,7 +116,7 @@ def killed_processes(kernel: int) -> list[tuple[int, tuple[int, int]]]:
                 state, *_, status = _stat(pid)
                 if state == 'Z' and int(status) & 0x7F:
                     found.append((int(status) & 0x7F, _ids(pid)))
-            except OSError:  # it has gone meanwhile
+            except OSError:  # it was reaped meanwhile
                 continue
     return found
 
@@ -136,7 +136,7 @@ def _stat(pid: int) -> list[str]:
 
 
 def _ids(pid: int) -> tuple[int, int]:
-    """Return the ID of a process and of its group as its own PID namespace knows them."""
+    """Return a process's ID and its group's ID inside its own PID namespace."""
     status = Path(f'/proc/{pid}/status')
     try:
         return int(_field(status, 'NStgid').split()[-1]), int(_field(status, 'NSpgid').split()[-1])

@@ -1,14 +1,14 @@
-"""Which system calls a room may make, by name and number: all others are as if Linux had none.
+"""The system calls that a room may make, by name and number; all others end with ENOSYS.
 
-They are what sample answers and lessons were seen to make, and what stands beside that in Python's
+They are those that sample answers and lessons were seen to make, and related ones in Python's
 os, threading, subprocess and socket, and in the libraries of NumPy and Matplotlib.
-Left out on purpose, though programs elsewhere use them:
 
-- memory that belongs to no process, so that nobody's is seen to grow: shmget, msgget, semget,
-  mq_open, memfd_create, vmsplice. Python's multiprocessing has its semaphores in /dev/shm;
-- what others on the machine share: io_setup, inotify_init, keyctl, sync;
+These are left out on purpose, though programs elsewhere use them:
+- memory outside of any process's own, which a limit on processes would miss: shmget, msgget,
+  semget, mq_open, memfd_create, vmsplice. Python's multiprocessing uses /dev/shm for semaphores;
+- resources shared by the whole machine: io_setup, inotify_init, keyctl, sync;
 - other processes' memory, namespaces, mounts, the machine's clock, name and modules, tracing;
-- clone3, whose flags a filter can't see: the C library then takes clone.
+- clone3, whose flags a filter can't read: the C library then calls clone.
 """
 
 ALLOWED: dict[str, int] = dict(  # noqa: C408 - it reads better so
@@ -58,14 +58,14 @@ ALLOWED: dict[str, int] = dict(  # noqa: C408 - it reads better so
     sigaltstack=131, tkill=200, time=201, timer_create=222, timer_settime=223,
     timer_gettime=224, timer_getoverrun=225, timer_delete=226, clock_gettime=228,
     clock_getres=229, clock_nanosleep=230, tgkill=234, rt_tgsigqueueinfo=297,
-    # users and rights, all of them given up already
+    # users and privileges, all of which were dropped before
     getuid=102, getgid=104, setuid=105, setgid=106, geteuid=107, getegid=108, setreuid=113,
     setregid=114, getgroups=115, setgroups=116, setresuid=117, getresuid=118, setresgid=119,
     getresgid=120, setfsuid=122, setfsgid=123, capget=125, capset=126,
     # limits and the machine
     uname=63, getrlimit=97, getrusage=98, sysinfo=99, setrlimit=160, prlimit64=302,
     getrandom=318,
-    # one more filter: `signals` sets it in a kernel that is started
+    # for one more filter: `signals` sets it in a kernel that was started, not forked
     seccomp=317,
 )  # fmt: skip
-"""Numbers of x86-64, the one machine that the ROS packages exist for."""
+"""Numbers of x86-64, the only architecture that the ROS packages are built for."""

@@ -1,4 +1,4 @@
-"""Scopes of systemd: where it is asked for one, cgroups can be made in it."""
+"""Scopes of systemd: inside a delegated scope, a process can make cgroups."""
 
 import os
 import shutil
@@ -10,14 +10,14 @@ from pathlib import Path
 from grader.sandbox.cgroup_paths import own_paths
 
 UNIT = 'mrb-'
-"""How a scope is called that is for graders alone: not every systemd marks what it delegates."""
+"""Prefix of the scopes made for graders: not every systemd marks the cgroups it delegates."""
 SYSTEMD = Path('/run/systemd/system')
-"""It is there where systemd runs."""
+"""A folder that exists if systemd is running."""
 _TRY_SEC = 10.0
 
 
 def scope_command() -> tuple[str, ...]:
-    """Return how a command begins that runs in a new scope."""
+    """Return the beginning of a command that runs in a new scope."""
     whose = ('--user',) if os.geteuid() else ()
     unit = f'--unit={UNIT}{uuid.uuid4().hex}'
     return ('systemd-run', *whose, '--scope', '--quiet', '--collect', unit, '-pDelegate=yes', '--')
@@ -25,9 +25,9 @@ def scope_command() -> tuple[str, ...]:
 
 @cache
 def has_scopes() -> bool:
-    """Try whether systemd makes a scope for us."""
+    """Try whether systemd makes a scope for this user."""
     lacking = shutil.which('systemd-run') is None or not SYSTEMD.is_dir()
-    if lacking or 'memory' in own_paths(Path('/proc/self')):  # of version 1: it has none to give
+    if lacking or 'memory' in own_paths(Path('/proc/self')):  # version 1: nothing is delegated
         return False
     try:
         tried = subprocess.run(
