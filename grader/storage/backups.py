@@ -1,4 +1,4 @@
-"""Copies of the database, made before each run that writes into it."""
+"""Backups of the database, made before each run that writes into it."""
 
 import os
 import sqlite3
@@ -16,11 +16,11 @@ from grader.storage.failures import in_sentences
 from grader.storage.gradebook import recover
 
 KEPT = 10
-"""So many backups; the oldest goes when there is one more."""
+"""How many backups are kept; a new one replaces the oldest."""
 
 
 def bring_in_order(course: Course) -> None:
-    """Finish what a run that was killed had begun, and back the database up, before a run."""
+    """Before a run: finish what a killed run had begun, and back up the database."""
     recover(course)
     with in_sentences(course):
         if has_database(course):
@@ -29,11 +29,11 @@ def bring_in_order(course: Course) -> None:
 
 
 def back_up(course: Course) -> Path | None:
-    """Copy the database into gradebook/backups/, unless the newest copy holds the same.
+    """Copy the database into gradebook/backups/, unless the newest copy is the same.
 
-    Returns the newest copy, or None where there is nothing to copy, or nothing that can dump
-    PostgreSQL. Raises sqlite3.DatabaseError, and leaves the copies as they are, when the database
-    is damaged.
+    Returns the newest copy; None if there is no database, or if pg_dump can't dump PostgreSQL.
+    Raises sqlite3.DatabaseError, and keeps the copies that there are, if the database is
+    damaged.
     """
     if not has_database(course):
         return None

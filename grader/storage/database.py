@@ -1,4 +1,4 @@
-"""nbgrader's database, in a file or in PostgreSQL: made whole, waited for, written in one go."""
+"""nbgrader's database, in a file or in PostgreSQL: create it, wait for it, write to it."""
 
 import logging
 import os
@@ -21,17 +21,17 @@ from grader.storage import failures, postgresql
 from grader.storage.failures import BUSY
 from grader.storage.failures import in_sentences as in_sentences
 
-# nbgrader prints a traceback of what it raises all the same
+# nbgrader raises the error anyway; this only hides its traceback
 logging.getLogger('tornado.application').addFilter(
     lambda record: not str(record.msg).startswith('Rolling back session')
 )
 
 
 def make_ready(course: Course) -> None:
-    """Make the gradebook's folder, and let nbgrader find the command that makes its database.
+    """Make the gradebook's folder, and put `alembic`, which nbgrader runs, on PATH.
 
-    nbgrader's own commands start it: nbgrader_config.py calls this first. Raises GradebookError
-    in a command of nbgrader's where its database is in PostgreSQL, and can't be had.
+    nbgrader_config.py calls this at the start of nbgrader's own commands. Raises GradebookError if
+    such a command needs a database in PostgreSQL that is not available.
     """
     course.gradebook.mkdir(parents=True, exist_ok=True)
     programs = os.environ.get('PATH', os.defpath).split(os.pathsep)
@@ -39,21 +39,21 @@ def make_ready(course: Course) -> None:
     if ours not in programs:
         os.environ['PATH'] = os.pathsep.join([ours, *programs])
     if is_in_postgresql(course.db_url) and 'nbgrader' in Path(sys.argv[0]).parts:
-        with in_sentences(course):  # nbgrader would say that the database has to be upgraded
+        with in_sentences(course):  # nbgrader would only say that the database must be upgraded
             make_database(course)
 
 
 def has_database(course: Course) -> bool:
-    """Whether there is a database yet."""
+    """Whether the database exists."""
     if is_in_postgresql(course.db_url):
         return postgresql.has_tables(course.db_url)
     return course.database.exists()
 
 
 def make_database(course: Course) -> None:
-    """Make the database if there is none: aside, because nbgrader would not repair half of one.
+    """Make the database if there is none, under another name: nbgrader can't repair half of one.
 
-    Raises GradebookError where there was one, and its file is empty.
+    Raises GradebookError if its file exists and is empty although there were results before.
     """
     course.gradebook.mkdir(parents=True, exist_ok=True)
     if is_in_postgresql(course.db_url):
@@ -63,14 +63,14 @@ def make_database(course: Course) -> None:
     if course.database.exists() and course.database.stat().st_size:
         return
     aside = course.database.with_name('.gradebook.db.new')
-    for left in course.gradebook.glob(f'{aside.name}*'):  # of a run that was ended meanwhile
+    for left in course.gradebook.glob(f'{aside.name}*'):  # left by a run that was killed
         left.unlink()
     _make_tables(f'sqlite:///{aside}')
     os.replace(aside, course.database)
 
 
 def _refuse_emptied(course: Course) -> None:
-    """Raise GradebookError where the file has lost what it held: a new one has no scores."""
+    """Raise GradebookError if the file lost its content: a new database would have no scores."""
     if not course.database.exists() or course.database.stat().st_size:
         return
     backups = (course.gradebook / 'backups').glob('*.db')
@@ -80,9 +80,9 @@ def _refuse_emptied(course: Course) -> None:
 
 
 def _make_tables(db_url: str) -> None:
-    """Make nbgrader's tables, with the version of its schema.
+    """Make nbgrader's tables, and record the version of its schema.
 
-    nbgrader would start `alembic`, which takes a second, to learn that version.
+    To find that version, nbgrader would start `alembic`, which takes a second.
     """
     from alembic.runtime.migration import MigrationContext
     from alembic.script import ScriptDirectory
@@ -92,13 +92,13 @@ def _make_tables(db_url: str) -> None:
     with engine.begin() as connection:
         MigrationContext.configure(connection).stamp(ScriptDirectory(ALEMBIC_DIR), 'heads')
     engine.dispose()
-    Gradebook(db_url).close()  # adds its course
+    Gradebook(db_url).close()  # adds nbgrader's row of the course
 
 
 def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
-    """Wait while another program holds the database, and say so. Raises GradebookError at last.
+    """Wait while another program locks the database, and say so. Raises after TIMEOUT_SEC.
 
-    PostgreSQL serves several programs; there, wait for the server.
+    PostgreSQL serves several programs at a time: wait until its server answers.
     """
     if is_in_postgresql(course.db_url):
         postgresql.wait_until_there(course.db_url, failures.TIMEOUT_SEC, say)
@@ -121,14 +121,14 @@ def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
 
 
 _engines: dict[str, Gradebook | None] = {}
-"""Of databases that are opened again and again just now."""
+"""By URL: the open engine of each block of `one_engine`; None until the first use."""
 
 
 @contextmanager
 def one_engine(db_url: str) -> Iterator[None]:
-    """Let `connected` make what opens this database once: it costs more than all the rest.
+    """Let `connected` create the engine of this database only once: that costs most of its time.
 
-    Each time the file is opened anew all the same, and let go at the end of the outermost block.
+    The file is still opened anew each time. The outermost block ends the reuse.
     """
     if db_url in _engines:
         yield
@@ -141,14 +141,14 @@ def one_engine(db_url: str) -> Iterator[None]:
 
 
 _connected: dict[str, Gradebook] = {}
-"""Databases that are open just now."""
+"""By URL: the databases that are open now."""
 
 
 @contextmanager
 def connected(db_url: str) -> Iterator[Gradebook]:
-    """Open the database; what is not committed at the end is forgotten.
+    """Open the database; what is not committed at the end is discarded.
 
-    A block inside another one has its connection, and what it has asked for is forgotten as well.
+    A block inside another one uses the same connection; its end discards loaded objects, too.
     """
     if open_already := _connected.get(db_url):
         try:
@@ -161,7 +161,7 @@ def connected(db_url: str) -> Iterator[Gradebook]:
         _engines[db_url] = book
     _connected[db_url] = book
     try:
-        with book:  # the end of its connections, which it makes again when it has to
+        with book:  # closes its connections, which it makes again when needed
             yield book
     finally:
         del _connected[db_url]
@@ -169,7 +169,7 @@ def connected(db_url: str) -> Iterator[Gradebook]:
 
 @contextmanager
 def transaction(db_url: str) -> Iterator[Gradebook]:
-    """Open the database; what nbgrader would commit cell by cell is committed at the end."""
+    """Open the database; commit once at the end what nbgrader would commit cell by cell."""
     with connected(db_url) as book:
         commit, book.db.commit = book.db.commit, book.db.flush
         try:

@@ -1,4 +1,4 @@
-"""What gradebook/deadlines.toml says; docs/for-instructors.md has an example."""
+"""Read gradebook/deadlines.toml; docs/for-instructors.md has an example."""
 
 import math
 import tomllib
@@ -17,29 +17,29 @@ FILE = 'deadlines.toml'
 DAY_SEC = 86_400
 _TABLES = {'due', 'extended', 'late', 'resubmissions'}
 _POLICY = {'per_day': 1.0, 'at_most': 1.0, 'grace_minutes': math.inf}
-"""The keys of [late], and the most that each may be."""
+"""The keys of [late], and the highest value of each."""
 
 
 @dataclass(frozen=True)
 class Deadlines:
-    """What the file says; times in UTC, without a zone, as nbgrader keeps them."""
+    """What the file says; times in UTC, without a time zone, as nbgrader stores them."""
 
     due: Mapping[str, datetime] = field(default_factory=dict)
     extended: Mapping[tuple[str, str], datetime] = field(default_factory=dict)
-    """By assignment and student."""
+    """By assignment and student ID."""
     per_day: float = 0.0
     at_most: float = 1.0
     grace_minutes: float = 0.0
     resubmissions: ResubmissionRules = field(default_factory=ResubmissionRules)
 
     def extension(self, assignment: str, student_id: str) -> timedelta | None:
-        """Return how much later than others a student may hand in; None where it is not later."""
+        """Return how much later than others a student may hand in; None if not later."""
         due = self.due.get(assignment)
         until = self.extended.get((assignment, student_id))
         return until - due if due and until and until > due else None
 
     def penalty(self, score: float, seconds_late: float) -> float | None:
-        """Return what lateness takes from a score; None where it takes nothing."""
+        """Return the points that lateness takes from a score; None if it takes nothing."""
         if not self.per_day or seconds_late <= 60 * self.grace_minutes:
             return None
         share = min(self.at_most, self.per_day * math.ceil(seconds_late / DAY_SEC))
@@ -47,9 +47,9 @@ class Deadlines:
 
 
 def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> Deadlines | None:
-    """Read the file; None where there is none.
+    """Read the file; return None if there is none.
 
-    Raises CourseError on what is wrong in it, and on names that are not among the `assignments`.
+    Raises CourseError if something in it is wrong, such as a name not among `assignments`.
     """
     path = gradebook / FILE
     if not path.exists():
@@ -60,9 +60,9 @@ def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> De
 def read_deadlines(
     content: bytes, path: Path, assignments: Collection[str] | None = None
 ) -> Deadlines:
-    """Read what stands, or is going to stand, in the file at `path`.
+    """Read the content that the file at `path` has, or is going to have.
 
-    Raises CourseError on what is wrong in it, and on names that are not among the `assignments`.
+    Raises CourseError if something in it is wrong, such as a name not among `assignments`.
     """
     try:
         return _understood(tomllib.loads(content.decode()), assignments)
@@ -73,9 +73,9 @@ def read_deadlines(
 
 
 def extended_for_nobody(course: Course) -> list[str]:
-    """Return a line for each extension of a student who has handed nothing in.
+    """Return a line for each extension of a student who has handed in nothing.
 
-    Their name may be misspelt, and then somebody else pays for it.
+    The name may be misspelt: then another student lacks the extension.
     """
     found = deadlines(course.gradebook) or Deadlines()
     return [
@@ -87,7 +87,7 @@ def extended_for_nobody(course: Course) -> list[str]:
 
 
 class _Wrong(Exception):
-    """Says what is wrong in the file."""
+    """What is wrong in the file."""
 
 
 def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:

@@ -15,10 +15,10 @@ from grader.storage.deadlines import FILE, Deadlines, deadlines, read_deadlines
 def set_due(
     course: Course, assignment: str, when: datetime | None, *, student_id: str | None = None
 ) -> None:
-    """Set, or with None remove, an assignment's due date, or one student's extension of it.
+    """Set an assignment's due date, or one student's extension of it; None removes it.
 
-    The rest of the file stays as it is, comments too. Raises CourseError, and writes nothing,
-    where the file would say something wrong then.
+    The rest of the file stays as it is, with its comments. Raises CourseError, and writes nothing,
+    if the change is wrong or pointless.
     """
     path = course.gradebook / FILE
     before = path.read_bytes() if path.exists() else b''

@@ -1,4 +1,4 @@
-"""Dumps of a database in PostgreSQL, made by pg_dump before each run, as backups of SQLite are."""
+"""Backups of a PostgreSQL database, made by pg_dump before each run."""
 
 import hashlib
 import os
@@ -16,9 +16,9 @@ _TIMEOUT_SEC = 600.0
 
 
 def dump(db_url: str, folder: Path, kept: int, say: Callable[[str], None]) -> Path | None:
-    """Dump the database into a folder, unless the newest dump holds the same; return the newest.
+    """Dump the database into a folder, unless the newest dump is the same; return the newest.
 
-    None, and a sentence to `say`, where pg_dump can not do it: grading does not need it.
+    If pg_dump can't do it, return None and `say` why: grading does not need it.
     """
     folder.mkdir(exist_ok=True)
     state = hashlib.sha256(state_of(db_url).encode()).hexdigest()[:12]
@@ -40,13 +40,13 @@ def dump(db_url: str, folder: Path, kept: int, say: Callable[[str], None]) -> Pa
 
 
 def _dump(db_url: str, file: Path) -> str:
-    """Write a dump; return why that can not be done, or ''. The password is in no argument."""
+    """Write a dump; return why that can't be done, or ''. No argument contains the password."""
     from psycopg.conninfo import make_conninfo
 
     url = make_url(db_url)
     _, given = create_engine(url).dialect.create_connect_args(url)
     password = given.pop('password', None)
-    given.pop('context', None)  # psycopg's own
+    given.pop('context', None)  # for psycopg only
     environment = {**os.environ, **({'PGPASSWORD': str(password)} if password else {})}
     command = [PROGRAM, '--format=custom', f'--file={file}', '--no-password']
     try:

@@ -1,4 +1,4 @@
-"""What a disk or a database can't do, in sentences: known without nbgrader's database."""
+"""Errors of a disk or a database in sentences; does not import nbgrader's database code."""
 
 import errno
 import sqlite3
@@ -10,9 +10,9 @@ from grader.common.errors import DISK_FULL, CourseError, GradebookError
 from grader.course import Course
 
 TIMEOUT_SEC = 60.0
-"""How long another program may keep the database; the formgrader takes it for milliseconds."""
+"""How long another program may lock the database; the formgrader locks it for milliseconds."""
 BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
-"""What SQLite says of a database that another program keeps."""
+"""SQLite's errors for a database that another program has locked."""
 
 _FULL = {*DISK_FULL, errno.EFBIG}
 _REFUSED = {errno.EACCES, errno.EPERM}
@@ -21,7 +21,7 @@ _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
 
 def damaged(course: Course, why: str) -> str:
-    """Return what to tell of a database that has lost what it held, and how to get it back."""
+    """Return the message for a database that lost its content, and how to restore it."""
     found = f'{course.database} is damaged ({why}).'
     backups = course.gradebook / 'backups'
     newest = max(backups.glob('*.db'), default=None)
@@ -38,7 +38,7 @@ def damaged(course: Course, why: str) -> str:
 
 @contextmanager
 def in_sentences(course: Course) -> Iterator[None]:
-    """Say in a GradebookError what a disk or a database can't do; other errors pass."""
+    """Turn an error of a disk or a database into a GradebookError; other errors pass."""
     try:
         yield
     except Exception as error:
@@ -48,11 +48,11 @@ def in_sentences(course: Course) -> Iterator[None]:
 
 
 def _sentence(error: BaseException | None, course: Course) -> str | None:
-    """Return what to tell of an error, or of what led to it: nbgrader wraps what it gets."""
+    """Return the message for an error or for its cause, because nbgrader wraps errors; or None."""
     if error is None or isinstance(error, CourseError):
         return None
     if is_in_postgresql(course.db_url):
-        from grader.storage.postgresql import sentence_of  # with nbgrader's database
+        from grader.storage.postgresql import sentence_of  # imports nbgrader's database code
 
         if told := sentence_of(error, course.db_url):
             return told

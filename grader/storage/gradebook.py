@@ -1,4 +1,4 @@
-"""The only writer of nbgrader's database: lessons, scores, executed notebooks."""
+"""Writes nbgrader's database, and nothing else does: lessons, scores, executed notebooks."""
 
 import json
 import logging
@@ -27,23 +27,23 @@ from grader.storage.pipeline import finish, first_reason, resources_of
 from grader.storage.registering import register, register_all
 
 _JOURNAL = '.{}.ipynb.begun'
-"""A journal: the executed notebook, kept beside its place until all of it is stored."""
+"""A journal: the executed notebook, kept in its folder until all of it is stored."""
 
 
 @dataclass(frozen=True)
 class StoredResult:
-    """What the gradebook holds for a submission, once it was graded."""
+    """What the gradebook holds for a submission after it was graded."""
 
     score: float
     max_score: float
     former: float | None
-    """The score before, if there was one."""
+    """The score before this grading, if there was one."""
     pending: bool
-    """Whether some of it waits for a person."""
+    """Whether a part of the score waits for manual grading."""
     reason: str
     """Why points are missing: the first reason, or ''."""
     late: float = 0.0
-    """What lateness took off the score."""
+    """The points that lateness takes off the score."""
 
 
 def register_before_autograde(*, assignment: str, **_: object) -> None:
@@ -57,25 +57,25 @@ def register_before_autograde(*, assignment: str, **_: object) -> None:
 def store(course: Course, submission: Submission, graded: NotebookNode) -> StoredResult:
     """Store an executed notebook: its scores, and the notebook itself under autograded/.
 
-    The same nbgrader passes do it as in `nbgrader autograde`. Manual scores stay, the submitted
-    files are only read, and storing twice is the same as once.
-    Whenever it is ended, `recover` finishes it. Raises GradebookError, and changes nothing, where
-    the disk is full or the database can't be had.
+    The same nbgrader preprocessors do it as in `nbgrader autograde`. Manual scores stay, the
+    submitted files are only read, and storing twice is the same as once. If the process is
+    killed, `recover` finishes it. Raises GradebookError, and changes nothing, if the disk is full
+    or the database is not available.
     """
     journal = _journal(course, submission)
     whose = submission.student_id, submission.assignment
     try:
         with in_sentences(course):
             wait_until_free(course)
-            with connected(course.db_url) as book:  # once for all that follows
+            with connected(course.db_url) as book:  # one connection for all that follows
                 former = held_score(book, *whose)
                 _keep_files(course, submission)
-                # in characters that a notebook has, too: what no file can hold is found before
+                # with ensure_ascii=False, text that can't be encoded fails here, not half-way
                 write_whole(journal, json.dumps(graded, ensure_ascii=False))
                 saved = _finish(course, submission, graded)
                 now = held_score(book, *whose)
     except (GradebookError, OSError):
-        raise  # that can be fixed, and then `recover` goes on
+        raise  # the user can fix that, and then `recover` finishes
     except Exception:
         journal.unlink(missing_ok=True)
         raise
@@ -91,7 +91,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
 
 
 def recover(course: Course) -> None:
-    """Store the rest of what was being stored when a run was killed."""
+    """Finish storing what a killed run had begun to store."""
     found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_JOURNAL.format("*")}'))
     if not found:
         return
@@ -112,13 +112,13 @@ def recover(course: Course) -> None:
                     _finish(course, submission, nbformat.read(journal, as_version=4))
             except GradebookError:
                 raise
-            except Exception:  # the lesson has changed since, for instance: it is graded again
+            except Exception:  # for example because the lesson has changed: it is graded again
                 logging.exception('%s of %s is not stored', assignment, printable(student))
                 journal.unlink()
 
 
 def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
-    """Store what is in the journal: doing it again is the same as doing it once."""
+    """Store what is in the journal; doing it again is the same as doing it once."""
     student, assignment = submission.student_id, submission.assignment
     at = resources_of(course, assignment, student)
     at['nbgrader']['timestamp'], notes = handed_in(submission)
@@ -132,9 +132,9 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
 
 
 def _keep_files(course: Course, submission: Submission) -> None:
-    """Put what was handed in beside a notebook where that is going to lie, before it has a score.
+    """Copy the submitted files to the folder of the executed notebook, before scores are stored.
 
-    Raises OSError where that can't be done: then nothing is stored.
+    Raises OSError if that can't be done: then nothing is stored.
     """
     folder = course.folder('autograded', submission.student_id, submission.assignment)
     beside = (*submission.extra_files, *from_exchange(submission))
@@ -155,7 +155,7 @@ def _journal(course: Course, submission: Submission) -> Path:
 
 @contextmanager
 def opened(course: Course) -> Iterator[Gradebook]:
-    """Open the database to read in it; every assignment of the course is known to it then."""
+    """Open the database for reading, after every assignment of the course was registered."""
     recover(course)
     register_all(course)
     recount_late_penalties(course)
@@ -164,5 +164,5 @@ def opened(course: Course) -> Iterator[Gradebook]:
 
 
 def waits_for_a_person(grade: Grade) -> bool:
-    """Whether nobody has given a score yet."""
+    """Whether the cell has neither an automatic nor a manual score."""
     return grade.auto_score is None and grade.manual_score is None

@@ -1,4 +1,4 @@
-"""What the database holds of a graded submission, in a question or two."""
+"""What the database holds of a graded submission, in one or two queries."""
 
 from dataclasses import dataclass
 
@@ -18,19 +18,19 @@ from grader.common.points import added_up
 
 @dataclass(frozen=True)
 class HeldScore:
-    """What a submission has come to."""
+    """The score of a submission."""
 
     score: float
-    """After what lateness took off."""
+    """With the late penalty subtracted."""
     max_score: float
     late: float
-    """What lateness took off."""
+    """The late penalty, in points."""
     pending: bool
-    """Whether some of it waits for a person."""
+    """Whether a part of the score waits for manual grading."""
 
 
 def _of_one_submission(asked: Select) -> Select:
-    """Return a question about submitted notebooks as one about those of one submission."""
+    """Restrict a query on submitted notebooks to those of one submission."""
     return (
         asked.join(Notebook, Notebook.id == SubmittedNotebook.notebook_id)
         .join(SubmittedAssignment, SubmittedAssignment.id == SubmittedNotebook.assignment_id)
@@ -64,7 +64,7 @@ _AUTO_SCORES = _of_one_submission(
 
 
 def held_score(book: Gradebook, student_id: str, assignment: str) -> HeldScore | None:
-    """Return what a submission has come to; None if it is not graded."""
+    """Return the score of a submission; None if it is not graded."""
     whose = {'assignment': assignment, 'student': student_id}
     found = book.db.execute(_SCORE, whose).one_or_none()
     if found is None:
@@ -74,6 +74,6 @@ def held_score(book: Gradebook, student_id: str, assignment: str) -> HeldScore |
 
 
 def auto_scores(book: Gradebook, student_id: str, assignment: str) -> dict[str, float | None]:
-    """Return what the checks of a submission gave, by grade id; None where they gave nothing."""
+    """Return the automatic scores of a submission, by grade id; None for a cell without one."""
     whose = {'assignment': assignment, 'student': student_id}
     return dict(book.db.execute(_AUTO_SCORES, whose).all())

@@ -1,11 +1,10 @@
-"""Late submissions: due dates, extensions and what lateness costs, all from one file.
+"""Late submissions: due dates, extensions and penalties, all from one file.
 
 gradebook/deadlines.toml is optional, and so is each part of it; docs/for-instructors.md has an
-example. `./course due` writes [due] and [extended], or an editor does.
+example. [due] and [extended] are written by `./course due` or by hand.
+`grader/storage/resubmissions.py` describes [resubmissions].
 
-`grader/storage/resubmissions.py` says what [resubmissions] may hold.
-
-A submission was handed in when its timestamp.txt says; without one it was in time.
+timestamp.txt says when a submission was handed in; without this file it was in time.
 """
 
 import logging
@@ -20,12 +19,12 @@ from grader.storage.deadlines import Deadlines, deadlines
 from grader.storage.lateness import tell_what_is_due
 
 _SILENT = logging.getLogger(__name__)
-"""What lateness takes off is shown with the score; nbgrader would log it for each notebook."""
+"""The penalty is shown with the score; nbgrader would also log it for each notebook."""
 _SILENT.setLevel(logging.ERROR)
 
 
 class LatePolicy(LateSubmissionPlugin):
-    """nbgrader's plugin for what lateness costs: as the course's file says."""
+    """nbgrader's plugin for late penalties, with the rules of the course's file."""
 
     def late_submission_penalty(
         self, student_id: str, score: float, total_seconds_late: float
@@ -35,18 +34,18 @@ class LatePolicy(LateSubmissionPlugin):
 
 
 class LatePenalties(AssignLatePenalties):
-    """Tell the gradebook what is due when, and let the plugin say what lateness costs."""
+    """Write due dates into the gradebook, and let the plugin compute the late penalty."""
 
     plugin_class = Type(LatePolicy, klass=BasePlugin).tag(config=True)
     log = Any(_SILENT)
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Give one submission its due date and its penalty; the notebook stays as it is."""
+        """Give one submission its due date and its penalty; the notebook is not changed."""
         at = resources['nbgrader']
         assignment, student = at['assignment'], at['student']
         gradebook = Course.of_nbgrader(resources).gradebook
         self.deadlines = deadlines(gradebook) or Deadlines()
-        # nbgrader opens the database once more, and most are in time
+        # nbgrader would open the database again, and most submissions are in time
         if tell_what_is_due(gradebook, at['db_url'], assignment, student):
             return super().preprocess(nb, resources)
         return nb, resources

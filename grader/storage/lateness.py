@@ -1,4 +1,4 @@
-"""Tell nbgrader's database what is due when."""
+"""Write due dates and extensions into nbgrader's database, and correct late penalties."""
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta
@@ -24,7 +24,7 @@ _SUBMISSION = (
         SubmittedAssignment.student_id == bindparam('student'),
     )
 )
-"""With all that tells whether it is late, in one question."""
+"""A submission with all that decides whether it is late, in one query."""
 _LATE = (
     select(SubmittedAssignment)
     .join(SubmittedAssignment.assignment)
@@ -43,10 +43,10 @@ _LATE = (
         )
     )
 )
-"""Those that are or were late; those in time by an extension are among them.
+"""Submissions that are past the due date or have a penalty, including extended ones.
 
-Who was late is asked once, and so are all scores: nbgrader has no index by which to ask them of
-each submission.
+One query finds them all, and another one all scores: nbgrader's tables have no index to ask this
+for each submission.
 """
 _SCORES = select(Grade.notebook_id, func.sum(Grade.score)).group_by(Grade.notebook_id)
 _EXTENDED = (
@@ -60,16 +60,16 @@ _EXTENDED = (
         )
     )
 )
-"""Those with an extension, in the database or in the file."""
+"""Submissions with an extension, in the database or in the file."""
 
 
 def tell_what_is_due(gradebook: Path, db_url: str, assignment: str, student_id: str) -> bool:
-    """Write a submission's due date down; return whether lateness costs, or has cost, anything."""
+    """Store a submission's due date; return whether it is late, or has a late penalty."""
     found = deadlines(gradebook)
     with connected(db_url) as book:
         whose = {'assignment': assignment, 'student': student_id}
         submission = book.db.execute(_SUBMISSION, whose).unique().scalar_one()
-        if found:  # else whatever nbgrader was told stays
+        if found:  # without a file, the dates that nbgrader was given stay
             submission.assignment.duedate = found.due.get(assignment)
             submission.extension = found.extension(assignment, student_id)
             book.db.commit()
@@ -78,9 +78,10 @@ def tell_what_is_due(gradebook: Path, db_url: str, assignment: str, student_id: 
 
 
 def recount_late_penalties(course: Course) -> None:
-    """Count today's dates and rules, and points given by hand: nbgrader does so at grading alone.
+    """Correct late penalties for today's dates, rules and manual scores.
 
-    Where there is no file, dates stay those that nbgrader was told.
+    nbgrader computes them only when it grades. If there is no file, the dates that nbgrader was
+    given stay.
     """
     found = deadlines(course.gradebook)
     with connected(course.db_url) as book:
@@ -89,7 +90,7 @@ def recount_late_penalties(course: Course) -> None:
     with gradebook_lock(course.gradebook), connected(course.db_url) as book:
         for row, column, when in [*_moved(book, found)]:
             setattr(row, column, when)
-        book.db.flush()  # before it is asked who is late
+        book.db.flush()  # before the query for late submissions
         for notebook, penalty in _outdated(book, found):
             notebook.late_submission_penalty = penalty
         book.db.commit()
@@ -98,7 +99,7 @@ def recount_late_penalties(course: Course) -> None:
 def _moved(
     book: Gradebook, found: Deadlines | None
 ) -> Iterator[tuple[Assignment | SubmittedAssignment, str, datetime | timedelta | None]]:
-    """Find what has another date than the file says: the row, its column, and the file's date."""
+    """Yield what differs from the file's dates: the row, its column, and the file's date."""
     if not found:
         return
     for assignment in book.assignments:
@@ -114,7 +115,7 @@ def _moved(
 def _outdated(
     book: Gradebook, found: Deadlines | None
 ) -> Iterator[tuple[SubmittedNotebook, float | None]]:
-    """Find notebooks whose penalty is not that of their score, and what it should be."""
+    """Yield notebooks whose penalty is wrong for their score, and the right penalty."""
     rules = found or Deadlines()
     found_late = book.db.execute(_LATE).unique().scalars().all()
     scores = dict(book.db.execute(_SCORES).tuples().all()) if found_late else {}

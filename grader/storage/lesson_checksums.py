@@ -1,4 +1,4 @@
-"""nbgrader's checksum of each graded cell of a lesson, made once for each text of it."""
+"""nbgrader's checksum of each graded cell of a lesson, made once for each version of it."""
 
 import hashlib
 import json
@@ -12,13 +12,13 @@ from grader.notebook.restore import grade_id
 from grader.storage.pipeline import apply, resources_of
 
 FOLDER = 'lessons'
-"""In the gradebook: what was made of each lesson. What is removed there is made again."""
+"""In the gradebook: the checksums of each lesson. A file removed there is made again."""
 SAVE_CELLS = 'nbgrader.preprocessors.SaveCells'
 
 
 def tidied(course: Course, assignment: str) -> NotebookNode:
-    """Return a lesson as the gradebook keeps it. Raises CourseError where it can't be released."""
-    from grader.authoring.release_passes import PASSES  # nbconvert: only where it has to be made
+    """Return a lesson as the gradebook stores it. Raises CourseError if it can't be released."""
+    from grader.authoring.release_passes import PASSES  # nbconvert: imported only when needed
     from grader.authoring.source_faults import refuse_faulty
 
     refuse_faulty(course, [assignment])
@@ -27,9 +27,9 @@ def tidied(course: Course, assignment: str) -> NotebookNode:
 
 
 def checksums(course: Course, assignment: str) -> dict[str, str]:
-    """Return the checksum of each graded cell that the lesson wants the gradebook to have.
+    """Return the checksum of each graded cell that the gradebook should have of the lesson.
 
-    They follow from the lesson's text and the grader's code: what was made of the same is reused.
+    They depend on the lesson's text and the grader's code; if both are the same, they are reused.
     """
     path = course.gradebook / FOLDER / f'{assignment}.json'
     made_from = _made_from(course, assignment)
@@ -38,7 +38,7 @@ def checksums(course: Course, assignment: str) -> dict[str, str]:
         if made_from and kept['made_from'] == made_from:
             return {str(name): str(checksum) for name, checksum in kept['checksums'].items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        pass  # none yet, or damaged
+        pass  # not there yet, or damaged: made again
     made = {
         grade_id(cell) or '': cell.metadata['nbgrader']['checksum']
         for cell in tidied(course, assignment).cells
@@ -53,5 +53,5 @@ def _made_from(course: Course, assignment: str) -> str:
     try:
         lesson = course.source_path(assignment).read_bytes()
     except OSError:
-        return ''  # whoever reads it says what is wrong
+        return ''  # reading the lesson raises the reason
     return hashlib.sha256(f'{machinery()}\n'.encode() + lesson).hexdigest()

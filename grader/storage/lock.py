@@ -1,4 +1,4 @@
-"""The lock of a gradebook: one process at a time writes into it, `nbgrader autograde` included."""
+"""The lock of a gradebook: one process at a time writes into it, also `nbgrader autograde`."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -12,10 +12,10 @@ from grader.common.logs import tell
 
 @contextmanager
 def gradebook_lock(gradebook: Path, say: Callable[[str], None] = tell) -> Iterator[None]:
-    """Hold the right to write into a gradebook for the block; wait for it first, and say so.
+    """Hold the lock of a gradebook for the block; wait for it first, and say so.
 
-    A process that holds it may take it again: the lock is free once the outermost block ends, or
-    the process does.
+    The process that holds it may take it again. It is released when the outermost block or the
+    process ends.
     """
     gradebook = gradebook.resolve()
     gradebook.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The passes that a submission goes through, the same for `nbgrader autograde` and for us."""
+"""The preprocessors for a submission, the same in `nbgrader autograde` and in `./course`."""
 
 import copy
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ SANITIZE_PASSES = (
     'nbgrader.preprocessors.OverwriteCells',
     'nbgrader.preprocessors.CheckCellMetadata',
 )
-"""What nbgrader does with a submitted notebook before it runs."""
+"""What nbgrader applies to a submitted notebook first, before it is run."""
 
 AUTOGRADE_PASSES = (
     'grader.autograde.preprocessors.ExecuteRooms',
@@ -32,11 +32,11 @@ AUTOGRADE_PASSES = (
     'grader.storage.late_penalties.LatePenalties',
     'grader.storage.cell_metadata.CheckMetadataOnce',
 )
-"""What nbgrader does with it then."""
+"""What nbgrader applies next, to run the notebook and store its scores."""
 
 
 def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
-    """Put a notebook through passes, given by name, as nbgrader would; return the result."""
+    """Apply preprocessors, given by name, to a notebook as nbgrader would; return the result."""
     _, changed = normalize(notebook)  # a copy
     resources = copy.deepcopy(resources)
     for each in _made(tuple(passes)):
@@ -47,8 +47,8 @@ def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> Not
 
 @cache
 def _made(passes: tuple[str, ...]) -> 'tuple[Preprocessor, ...]':
-    """Make passes as nbconvert's Exporter would; once: it takes longer than their work."""
-    # only now: what is graded already needs no passes, and these take a third of a second
+    """Make preprocessors as nbconvert's Exporter would; cached, because that is slow."""
+    # imported late, a third of a second: what is graded already needs no preprocessors
     from nbconvert.preprocessors import Preprocessor  # noqa: F401
     from traitlets.config import Config
     from traitlets.utils.importstring import import_item
@@ -65,7 +65,7 @@ def _made(passes: tuple[str, ...]) -> 'tuple[Preprocessor, ...]':
 
 
 def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict:
-    """Return what nbgrader's passes want to know of the notebook that they get."""
+    """Return the resources that nbgrader's preprocessors expect with a notebook."""
     return {
         'nbgrader': {
             'notebook': assignment,
@@ -78,7 +78,7 @@ def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict
 
 
 def prepare(course: Course, assignment: str, restored: NotebookNode) -> NotebookNode:
-    """Do to a restored notebook what nbgrader does before it runs: checksums, kernel, metadata."""
+    """Do to a restored notebook what nbgrader does first: checksums, kernel, metadata."""
     return apply(
         _after('grader.autograde.preprocessors.RestoreSubmission', SANITIZE_PASSES),
         restored,
@@ -87,9 +87,9 @@ def prepare(course: Course, assignment: str, restored: NotebookNode) -> Notebook
 
 
 def prepared_template(course: Course, assignment: str) -> AssignmentTemplate:
-    """Return what submissions are restored from with all done to it that `prepare` does.
+    """Return the template of an assignment's submissions, after `prepare`.
 
-    What is restored from it need not be prepared: whatever nbgrader changes is the template's.
+    A notebook restored from it need not be prepared: `prepare` only changes cells of the template.
     """
     return prepare_template(course, assignment, course.template(assignment))
 
@@ -97,14 +97,14 @@ def prepared_template(course: Course, assignment: str) -> AssignmentTemplate:
 def prepare_template(
     course: Course, assignment: str, template: AssignmentTemplate
 ) -> AssignmentTemplate:
-    """Do to a template, once for all submissions, what `prepare` does to what is restored."""
+    """Apply `prepare` to a template, once for all submissions that are restored from it."""
     return replace(template, notebook=prepare(course, assignment, template.notebook))
 
 
 def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
-    """Do with an executed notebook, in place, what nbgrader does then: it stores the scores.
+    """Do to an executed notebook, in place, what nbgrader does next: store the scores.
 
-    Raises ValidationError, and stores nothing, where it is no notebook.
+    Raises ValidationError, and stores nothing, if it is not a valid notebook.
     """
     nbformat.validate(executed, relax_add_props=True)
     for each in _made(_after('grader.autograde.preprocessors.ExecuteRooms', AUTOGRADE_PASSES)):
@@ -113,7 +113,7 @@ def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
 
 
 def unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
-    """Return what stands for a submission that can't be graded: nothing answered, and why.
+    """Return a notebook for a submission that can't be graded: unanswered, with the reason.
 
     The template is a prepared one.
     """
@@ -126,7 +126,7 @@ def unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
 def first_reason(graded: NotebookNode) -> str:
     """Return the first reason why points are missing in an executed notebook, or ''.
 
-    What went wrong in the student's own cells comes before what the check then saw.
+    An error in the student's own cells comes before the reason of the check.
     """
     restored = graded.metadata.get(KEY, {})
     if problem := restored.get('problem'):

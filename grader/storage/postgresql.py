@@ -1,4 +1,4 @@
-"""The database in PostgreSQL: made whole, waited for, and what it can't do, in sentences."""
+"""The database in PostgreSQL: create it, wait for it, and explain its errors in sentences."""
 
 import re
 import time
@@ -21,17 +21,17 @@ _MAKE = (
 )
 ADDRESS = f'gradebook/{FILE}'
 _MAKING = 20_26
-"""The advisory lock of PostgreSQL under which tables are made: for one process at a time."""
+"""The key of PostgreSQL's advisory lock for making tables: one process at a time makes them."""
 
 
 @dataclass(frozen=True)
 class _Fault:
-    """What PostgreSQL refuses, and what to do then."""
+    """A kind of error that PostgreSQL reports, and the message for it."""
 
     states: tuple[str, ...]
-    """Beginnings of its SQLSTATE, which nothing has that a connection was refused for."""
+    """Beginnings of its SQLSTATE; psycopg has no SQLSTATE if a connection was refused."""
     words: str
-    """Then its message, in English; in other languages the last fault is told, with that."""
+    """Without a SQLSTATE: a pattern of its English text; else the fault counts as _AWAY."""
     sentence: str
 
 
@@ -82,13 +82,13 @@ _AWAY = _Fault(
 
 
 def has_tables(db_url: str) -> bool:
-    """Whether nbgrader's tables are there, all of them."""
+    """Whether nbgrader's tables exist, all of them."""
     with _connection(db_url) as connection:
         return _has_tables(connection)
 
 
 def make_tables(db_url: str) -> None:
-    """Make nbgrader's tables where there are none, in one transaction: all of them or none."""
+    """Make nbgrader's tables if there are none, all of them in one transaction."""
     from alembic.runtime.migration import MigrationContext
     from alembic.script import ScriptDirectory
 
@@ -102,7 +102,7 @@ def make_tables(db_url: str) -> None:
                 f'written. {_MAKE.format(name=make_url(db_url).database)}'
             )
         connection.execute(text(f'SELECT pg_advisory_xact_lock({_MAKING})'))
-        if _has_tables(connection):  # another process has made them meanwhile
+        if _has_tables(connection):  # another process has made them while this one waited
             return
         Base.metadata.create_all(connection)
         MigrationContext.configure(connection).stamp(ScriptDirectory(ALEMBIC_DIR), 'heads')
@@ -112,9 +112,9 @@ def make_tables(db_url: str) -> None:
 
 
 def wait_until_there(db_url: str, timeout_sec: float, say: Callable[[str], None]) -> None:
-    """Wait while the server is away, as while it is started again, and say so.
+    """Wait while the server does not answer, for example during a restart, and say so.
 
-    Raises what the connection fails with at last, and at once what waiting does not help.
+    Raises the connection's error after `timeout_sec`, or at once if waiting can't help.
     """
     deadline, said = time.monotonic() + timeout_sec, False
     while True:
@@ -131,7 +131,7 @@ def wait_until_there(db_url: str, timeout_sec: float, say: Callable[[str], None]
 
 
 def sentence_of(error: BaseException, db_url: str) -> str | None:
-    """Return what to tell of an error, or None where it is not one of the server's."""
+    """Return the message for an error, or None if it does not come from the database."""
     if isinstance(error, ModuleNotFoundError) and error.name == 'psycopg':
         return (
             f'{shown(db_url)} needs psycopg, which this Python lacks: install it with '
@@ -148,7 +148,7 @@ def sentence_of(error: BaseException, db_url: str) -> str | None:
 
 
 def state_of(db_url: str) -> str:
-    """Return what is another text as soon as anything was written, as a dump would show it."""
+    """Return a text that changes with every write to the database."""
     query = """SELECT system_identifier, oid, pg_current_snapshot()
         FROM pg_control_system(), pg_database WHERE datname = current_database()"""
     with _connection(db_url) as connection:
@@ -156,7 +156,7 @@ def state_of(db_url: str) -> str:
 
 
 def shown(db_url: str) -> str:
-    """Return the address of a database as people may see it: without the password."""
+    """Return a database's URL as it may be shown: without the password."""
     url = make_url(db_url)
     shorter = URL.create(
         'postgresql', url.username, None, url.host, url.port, url.database, url.query and {}
@@ -166,7 +166,7 @@ def shown(db_url: str) -> str:
 
 @contextmanager
 def _connection(db_url: str) -> Iterator[Connection]:
-    """Connect for one transaction, which is committed at the end."""
+    """Connect for one transaction, which is committed at the end of the block."""
     engine = create_engine(db_url, poolclass=NullPool)
     with engine.begin() as connection:
         yield connection
@@ -174,13 +174,13 @@ def _connection(db_url: str) -> Iterator[Connection]:
 
 def _has_tables(connection: Connection) -> bool:
     there = connection.execute(text("SELECT to_regclass('alembic_version')")).scalar() is not None
-    if there:  # those of another user can not be used
+    if there:  # raises if the tables belong to another user and can't be read
         connection.execute(text('SELECT 1 FROM alembic_version'))
     return there
 
 
 def _fault_of(error: DBAPIError) -> _Fault | None:
-    """Return what kind of fault an error of the server's is, or None for one of ours."""
+    """Return the kind of fault of a database error; None if it is a fault in our own code."""
     state = getattr(error.orig, 'sqlstate', None) or ''
     said = str(error.orig)
     for fault in _FAULTS:
@@ -191,7 +191,7 @@ def _fault_of(error: DBAPIError) -> _Fault | None:
 
 
 def _cause(error: DBAPIError, db_url: str) -> str:
-    """Return the server's own words in a line; a password, which it never says, is taken out."""
+    """Return the server's message in one line, without the password in case it contains it."""
     lines = [line.strip(' -\t') for line in str(error.orig).splitlines() if line.strip()]
     first = next((line for line in lines if 'FATAL' in line), lines[0] if lines else 'no reason')
     said = re.sub(r'^.*\bfailed: (FATAL: +)?', '', first).rstrip('.')

@@ -1,4 +1,4 @@
-"""What the gradebook and the executed notebooks say, cell by cell."""
+"""What the gradebook and the executed notebooks say about each graded cell."""
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from grader.storage.lesson_checksums import checksums
 from grader.storage.registering import withdrawn
 
 MOST_ASKED = 500
-"""Of so many students a database is asked at once; all of them have a limit."""
+"""Students in one query: databases limit the number of values in a query."""
 
 
 @dataclass(frozen=True)
@@ -41,20 +41,20 @@ class CellScore:
     assignment: str
     grade_id: str
     score: float | None
-    """None where nothing was handed in, or where a person has to decide."""
+    """None if nothing was handed in, or if it waits for manual grading."""
     max_score: float
     submitted: bool = True
     by_hand: bool = False
-    """Whether a person gave the score."""
+    """Whether the score was given by hand."""
     comment: str = ''
-    """What a person wrote."""
+    """The comment that was written by hand."""
 
 
 def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) -> list[CellScore]:
-    """Return all graded cells of all students, in a stable order; registers what is new.
+    """Return all graded cells of all students, in a stable order; registers new assignments.
 
-    A lesson that solutions/ has no longer is left out, unless somebody has a score for it. `only`
-    asks for some submissions that were graded, as pairs of student and assignment.
+    A lesson that is no longer in solutions/ is left out, unless a student has a score for it.
+    `only` selects some graded submissions, as pairs of student and assignment.
     """
     with opened(course) if only is None else connected(course.db_url) as book:
         cells_of = _cells_of(course, book, only)
@@ -67,14 +67,14 @@ def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) 
             for student in whose:
                 scores = _scores(student, assignment, cells, graded.get(student))
                 found[student, assignment] = [*scores]
-            book.db.expunge_all()  # no lesson of a large class is needed beside another
+            book.db.expunge_all()  # free the rows of this assignment before the next one is read
         return [record for whose in sorted(found) for record in found[whose]]
 
 
 def _cells_of(
     course: Course, book: Gradebook, only: Collection[tuple[str, str]] | None
 ) -> dict[str, list[GradeCell]]:
-    """Return the graded cells of each assignment that is asked for, in the lesson's order."""
+    """Return the graded cells of each requested assignment, in the lesson's order."""
     names = {name for [name] in book.db.execute(select(Assignment.name))}
     if only is None:
         names -= {name for name, number in withdrawn(course, book).items() if not number}
@@ -93,19 +93,19 @@ def _cells_of(
 
 
 def verdicts(course: Course, student_id: str, assignment: str) -> dict[str, dict]:
-    """Return what the executed notebook says of each graded cell, by grade id."""
+    """Return the verdict of each graded cell in a submission's executed notebook, by grade id."""
     return verdicts_in(graded_notebook(course, student_id, assignment))
 
 
 def verdicts_in(graded: NotebookNode) -> dict[str, dict]:
-    """Return what an executed notebook says of each graded cell, by grade id."""
+    """Return the verdict of each graded cell in an executed notebook, by grade id."""
     return {name: cell.metadata.get(KEY, {}) for cell in graded.cells if (name := grade_id(cell))}
 
 
 def graded_notebook(course: Course, student_id: str, assignment: str) -> NotebookNode:
-    """Return the executed notebook of a submission; one without cells where there is none.
+    """Return the executed notebook of a submission; one without cells if there is none.
 
-    Raises DamagedResult where the file is no notebook any more.
+    Raises DamagedResult if the file is not a notebook.
     """
     path = course.folder('autograded', student_id, assignment) / f'{assignment}.ipynb'
     if not path.exists():
@@ -120,7 +120,7 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
 def _graded(
     book: Gradebook, assignment: str, students: Sequence[str]
 ) -> dict[str, SubmittedNotebook]:
-    """Return what the database holds of an assignment, by student: all in a few questions."""
+    """Return an assignment's stored notebooks by student, in a few queries."""
     asked = (
         select(SubmittedAssignment.student_id, SubmittedNotebook)
         .join(SubmittedAssignment, SubmittedNotebook.assignment_id == SubmittedAssignment.id)
@@ -167,7 +167,7 @@ def _scores(
 
 
 def _place_in(course: Course, assignment: str) -> Callable[[GradeCell], tuple[int, str]]:
-    """Return a sort key that puts graded cells in the lesson's order; strangers come last."""
+    """Return a sort key for the lesson's order; cells that the lesson lacks come last."""
     order: list[str] = []
     if course.source_path(assignment).exists():
         order = list(checksums(course, assignment))

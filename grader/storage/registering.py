@@ -1,4 +1,4 @@
-"""Tell nbgrader's database what an assignment consists of."""
+"""Register assignments in nbgrader's database: which cells they have."""
 
 from nbgrader.api import (
     Assignment,
@@ -18,9 +18,9 @@ from grader.storage.pipeline import apply, resources_of
 
 
 def register(course: Course, assignment: str) -> bool:
-    """Tell the database what an assignment consists of; return whether that was news to it.
+    """Write into the database which cells an assignment has; return whether anything was new.
 
-    Raises CourseError when cells came or went although submissions are graded already.
+    Raises CourseError if cells were added or removed after submissions were graded.
     """
     wanted = checksums(course, assignment)
     make_database(course)
@@ -45,7 +45,7 @@ def register(course: Course, assignment: str) -> bool:
 
 
 def register_all(course: Course) -> None:
-    """Tell the database of every assignment that it does not know as it is now.
+    """Register every assignment that is new, or differs from what the database has.
 
     Raises CourseError as `register` does.
     """
@@ -67,9 +67,9 @@ def register_all(course: Course) -> None:
 
 
 def withdrawn(course: Course, book: Gradebook) -> dict[str, int]:
-    """Return what solutions/ has no longer and the database still knows, by name.
+    """Return the assignments that the database has and solutions/ no longer has.
 
-    With how many submissions of it are graded.
+    With the number of graded submissions of each.
     """
     asked = (
         select(Assignment.name, func.count(SubmittedAssignment.id))

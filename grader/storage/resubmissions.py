@@ -1,11 +1,11 @@
-"""What handing in again is bound by: the table [resubmissions] of gradebook/deadlines.toml.
+"""Limits on handing in again: the table [resubmissions] of gradebook/deadlines.toml.
 
     [resubmissions]
-    per_hour = 6            # so many submissions of a lesson are graded for a student in an hour
-    in_total = 30           # and so many in all; what is more waits, and is kept
-    hidden_inputs = "anew"  # or "kept", the default: each student's own, at each attempt
+    per_hour = 6            # submissions of a lesson that are graded for a student in an hour
+    in_total = 30           # the same in all; further submissions wait, and are kept
+    hidden_inputs = "anew"  # or "kept", the default: the same for a student at each attempt
 
-`./course serve` counts; whoever runs `./course grade` has decided. By default nothing is bound.
+Only `./course serve` applies the limits; `./course grade` does not. By default there are none.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class ResubmissionRules:
 
 
 def read_rules(table: dict[str, Any]) -> ResubmissionRules:
-    """Return what a table says. Raises ValueError with what is wrong in it."""
+    """Return the rules in a table. Raises ValueError if something in it is wrong."""
     if strange := sorted(table.keys() - {'per_hour', 'in_total', 'hidden_inputs'}):
         raise ValueError(f'{strange[0]!r} is not known')
     for key in ('per_hour', 'in_total'):

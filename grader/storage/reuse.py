@@ -1,4 +1,4 @@
-"""Results that need not be made again: nothing that they depend on has changed since."""
+"""Results that are used again, because nothing that they depend on has changed since."""
 
 import hashlib
 import json
@@ -20,12 +20,12 @@ from grader.storage.lateness import tell_what_is_due
 from grader.storage.pipeline import apply, first_reason, resources_of
 
 LATE = ('grader.storage.late_penalties.LatePenalties',)
-"""A due date may have moved, which the result does not depend on."""
+"""The penalty is computed again: a due date may have moved, and results don't depend on it."""
 _UNDER = 'graded_under'
 
 
 def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
-    """Return a hash of all that the results of an assignment depend on, for every student."""
+    """Return a hash of all that the results of all students of an assignment depend on."""
     lesson = [_said(course.source(assignment)), _said(course.release(assignment))]
     return _digest(json.dumps([lesson, isolated, machinery()], sort_keys=True).encode())
 
@@ -41,18 +41,18 @@ def key_of(submission: Submission, given: str, *, seed: str) -> str:
 
 
 def remember(graded: NotebookNode, key: str) -> None:
-    """Write into a graded notebook what it was graded under; it is stored with its result."""
+    """Write the key into a graded notebook; it is stored with the result."""
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []}))[_UNDER] = key
 
 
 def find_earlier_result(course: Course, submission: Submission, key: str) -> NotebookNode | None:
-    """Return the graded notebook that is stored under a key, if each check came to a verdict."""
+    """Return the graded notebook that is stored under a key, if each of its checks has a score."""
     folder = course.folder('autograded', submission.student_id, submission.assignment)
     try:
         text = (folder / f'{submission.assignment}.ipynb').read_text(encoding='utf-8')
         notebook = parsed(text) if key in text else None
     except (OSError, ValueError):
-        return None  # none yet, or damaged: it is graded again
+        return None  # not there yet, or damaged: it is graded again
     if notebook is None or notebook.metadata.get(KEY, {}).get(_UNDER) != key:
         return None
     return notebook if all(_outcomes(notebook).values()) else None
@@ -61,9 +61,9 @@ def find_earlier_result(course: Course, submission: Submission, key: str) -> Not
 def refresh_late_penalty(
     course: Course, submission: Submission, graded: NotebookNode
 ) -> StoredResult | None:
-    """Return what the gradebook holds for a kept notebook, the late penalty counted anew.
+    """Return what the gradebook holds for an earlier result, with the late penalty updated.
 
-    Manual scores are left as they are. None where the gradebook holds anything else for it.
+    Manual scores stay. Returns None if the gradebook's scores are not those of the result.
     """
     student, assignment = submission.student_id, submission.assignment
     with connected(course.db_url) as book:
@@ -85,7 +85,7 @@ def refresh_late_penalty(
 
 
 def _agree(held: dict[str, float | None], graded: NotebookNode) -> bool:
-    """Whether the scores are those of the notebook's verdicts."""
+    """Whether the stored scores are those of the notebook's verdicts."""
     outcomes = _outcomes(graded)
     cells = {grade_id(cell): cell.metadata for cell in _checks(graded)}
     return {name: score for name, score in held.items() if name in outcomes} == {
@@ -97,7 +97,7 @@ def _agree(held: dict[str, float | None], graded: NotebookNode) -> bool:
 
 
 def _outcomes(notebook: NotebookNode) -> dict[str, str]:
-    """Return the outcome of each check, or '' where it has no score, by its grade id."""
+    """Return the outcome of each check by grade id; '' if it has no score."""
     found = {grade_id(c) or '': c.metadata.get(KEY, {}).get('outcome') for c in _checks(notebook)}
     return {name: said if said in SCORED else '' for name, said in found.items()}
 
@@ -107,7 +107,7 @@ def _checks(notebook: NotebookNode) -> list[NotebookNode]:
 
 
 def _said(notebook: NotebookNode) -> list:
-    """Return what a lesson says and asks; its outputs don't count."""
+    """Return the cells of a lesson, without their outputs."""
     return [(c.cell_type, c.source, c.get('id'), c.metadata) for c in notebook.cells]
 
 

@@ -1,4 +1,4 @@
-"""The pass that puts the verdicts of a notebook into nbgrader's database."""
+"""The preprocessor that writes the verdicts of a notebook into nbgrader's database."""
 
 import nbformat
 from my_robot_basics.validate.verdict import SCORED
@@ -10,25 +10,25 @@ from grader.storage.database import transaction
 from grader.storage.submission_rows import SubmissionRows
 
 NO_ANSWER = 'there is no answer'
-"""Why a text that a person would have graded earns nothing."""
+"""The reason why an empty text answer, which would be graded by hand, earns nothing."""
 
 
 class SaveGrades(SaveAutoGrades):
     """Store the verdicts of one notebook, all of them or none.
 
-    nbgrader reads a score off a cell's outputs, and a cell without any would earn its points. So a
-    verdict is wanted too: without one the cell has no score and waits for a person.
+    nbgrader reads a score from a cell's outputs, and gives all points to a cell without outputs.
+    So a cell also needs a verdict: without one it has no score, and waits for manual grading.
     """
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Store the scores of a notebook that was executed."""
+        """Store the scores of an executed notebook."""
         at = resources['nbgrader']
         self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
         self.student_id, self.db_url = at['student'], at['db_url']
         dated = {'timestamp': at['timestamp']} if at.get('timestamp') else {}
         with transaction(self.db_url) as book:
             book.update_or_create_student(self.student_id)
-            with book.db.no_autoflush:  # it warns of what is half built meanwhile
+            with book.db.no_autoflush:  # or SQLAlchemy warns of rows that are incomplete
                 submission = book.update_or_create_submission(
                     self.assignment_id, self.student_id, **dated
                 )
@@ -46,5 +46,5 @@ class SaveGrades(SaveAutoGrades):
         if cell.cell_type == 'code' and verdict.get('outcome') not in SCORED:
             grade.auto_score, grade.needs_manual_grade = None, True
         elif cell.cell_type != 'code' and grade.auto_score is not None:
-            # nobody has to read what nobody wrote
+            # an unanswered text need not be graded by hand
             verdict |= {'outcome': 'failed', 'reason': NO_ANSWER, 'notes': []}

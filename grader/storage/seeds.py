@@ -1,4 +1,4 @@
-"""Which inputs hidden tests choose: by the student, and perhaps by what was handed in."""
+"""The seed of the inputs that hidden tests choose: per student, or per submitted content."""
 
 import hashlib
 import hmac
@@ -12,10 +12,10 @@ from grader.storage.resubmissions import ANEW
 
 
 def seeds(course: Course, assignment: str) -> Callable[[Submission], str]:
-    """Return what gives the seed of each submission: the lesson is read only once.
+    """Return a function from submission to seed: the lesson is read only once.
 
-    Where the course wants inputs anew for each attempt, another content has another seed, and the
-    same content the same one whenever it is graded.
+    With `hidden_inputs = "anew"`, a submission with other content has another seed, and the same
+    content has the same seed whenever it is graded.
     """
     of_student = course.seeds(assignment)
     anew = (deadlines(course.gradebook) or Deadlines()).resubmissions.hidden_inputs == ANEW
@@ -31,7 +31,7 @@ def seeds(course: Course, assignment: str) -> Callable[[Submission], str]:
 
 
 def content_digest(files: Mapping[str, Path]) -> bytes:
-    """Return a digest of files, by name; one that is not there, or a link, is empty."""
+    """Return a digest of files, by name; a link, or a file that is missing, counts as empty."""
     whole = hashlib.sha256()
     for name, path in sorted(files.items()):
         content = path.read_bytes() if path.is_file() and not path.is_symlink() else b''

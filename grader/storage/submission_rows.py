@@ -1,4 +1,4 @@
-"""What the database holds of one submission's cells, asked for once and not cell by cell."""
+"""The database's rows for one submission's cells, read in one query and not cell by cell."""
 
 from types import SimpleNamespace
 from typing import TypeVar
@@ -29,7 +29,7 @@ def _rows_of(kind: type[Grade] | type[Comment]) -> Select:
             SubmittedNotebook.assignment_id == bindparam('submission'),
             Notebook.name == bindparam('notebook'),
         )
-        .order_by(BaseCell.type.desc())  # of one name, nbgrader takes a TaskCell last
+        .order_by(BaseCell.type.desc())  # a TaskCell replaces another cell of the same name
     )
 
 
@@ -38,10 +38,10 @@ _COMMENTS = _rows_of(Comment)
 
 
 class SubmissionRows:
-    """Stands in for a Gradebook where nbgrader stores scores and comments of one submission.
+    """Replaces a Gradebook when nbgrader stores scores and comments of one submission.
 
-    It asks for each cell's row by the name of its submission, a join of seven tables, and commits
-    after each. Whoever makes this commits all of it.
+    A Gradebook queries each cell's row by the submission's name, a join of seven tables, and
+    commits after each. Here nothing is committed: the caller does that.
     """
 
     def __init__(self, book: Gradebook, submission: SubmittedAssignment, notebook: str) -> None:
@@ -55,7 +55,7 @@ class SubmissionRows:
         return _found(self._grades, cell)
 
     def find_comment(self, cell: str | None, *_: str) -> Comment:
-        """Return the row of an answer. Raises MissingEntry as nbgrader does."""
+        """Return the row of an answer cell. Raises MissingEntry as nbgrader does."""
         return _found(self._comments, cell)
 
 

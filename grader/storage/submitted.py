@@ -1,4 +1,4 @@
-"""What lies under gradebook/submitted/, waiting to be graded."""
+"""The submissions under gradebook/submitted/."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,26 +11,26 @@ from grader.course import Course
 
 @dataclass(frozen=True)
 class SubmissionFolder:
-    """Something under gradebook/submitted/."""
+    """An entry under gradebook/submitted/."""
 
     student_id: str
     assignment: str
     folder: Path
     problem: str = ''
-    """Why it can't be a submission of anything."""
+    """Why it can't be graded as a submission."""
 
 
 def known_students(course: Course) -> list[str]:
-    """Return the students of whom something was handed in."""
+    """Return the students who have handed in something."""
     return [folder.name for folder in _visible(course.folder('submitted', '', ''))]
 
 
 def find_submissions(
     course: Course, *, assignment: str | None = None, student_id: str | None = None
 ) -> list[SubmissionFolder]:
-    """Return what lies under gradebook/submitted/, sorted; what is out of place has a problem.
+    """Return what is under gradebook/submitted/, sorted; a misplaced file has a problem.
 
-    Raises CourseError when nothing fits the assignment and the student asked for.
+    Raises CourseError if nothing is there for the given assignment and student.
     """
     if assignment:
         course.expect_assignment(assignment)
@@ -53,7 +53,7 @@ def find_submissions(
 
 
 def is_new(course: Course, found: SubmissionFolder) -> bool:
-    """Whether a submission has no result that could still hold."""
+    """Whether a submission has no earlier result that could be used again."""
     graded = course.folder('autograded', found.student_id, found.assignment)
     return not found.problem and not (graded / f'{found.assignment}.ipynb').exists()
 
@@ -80,7 +80,7 @@ def _of_student(student: Path, known: list[str]) -> Iterator[SubmissionFolder]:
 
 
 def _visible(folder: Path) -> list[Path]:
-    """Return what lies in a folder, sorted; what editors and desktops hide there left out."""
+    """Return the content of a folder, sorted, without hidden files of editors and desktops."""
     if not folder.is_dir():
         return []
     return sorted(path for path in folder.iterdir() if not path.name.startswith('.'))
