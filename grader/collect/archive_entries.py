@@ -1,4 +1,4 @@
-"""List what stands in a zip or a tar that nobody vouches for: its paths are read as text alone."""
+"""List the files in a zip or tar of unknown origin: its paths are only read as text."""
 
 import bz2
 import gzip
@@ -21,42 +21,42 @@ from grader.collect.unpack_limits import UnpackLimits
 from grader.common.dates import utc_of
 
 MAX_PARTS, MAX_NAME_BYTES = 20, 255
-"""Folders within folders, and what a file system takes as a name."""
+"""How many folders deep a path may be, and how long a name may be in a file system."""
 MAX_READ_BYTES = 8_000_000
-"""A zip's table of contents and a tar's headers are read at once: so much names 50,000 files."""
+"""A zip's directory and a tar's headers are read at once: this is enough for 50,000 files."""
 CHUNK = 1 << 20
 
 TAR_READERS: dict[str, Callable[..., Any]] = {'.tar': open, '.gz': gzip.open, '.tgz': gzip.open}
 TAR_READERS |= {'.bz2': bz2.open, '.tbz2': bz2.open, '.xz': lzma.open, '.txz': lzma.open}
 ARCHIVE = re.compile(r'\.(zip|tar|tgz|tbz2|txz|tar\.(gz|bz2|xz))$', re.IGNORECASE)
-"""How names of archives end that can be read."""
+"""File name endings of archives that can be read."""
 
 
 @dataclass(frozen=True)
 class ArchiveEntry:
-    """What an archive says of one file in it."""
+    """What an archive says about a file in it."""
 
     parts: tuple[str, ...]
     """Its path, component by component."""
     modified: datetime | None
-    """In UTC; None where that is no time."""
+    """In UTC; None if the archive has no valid time."""
     problem: str
-    """Why it must not be unpacked."""
+    """Why it must not be unpacked, or ''."""
     content: Callable[[], IO[bytes]]
-    """Open it; what is read then, and whether it can be, is up to the archive."""
+    """Opens the file; reading it can still raise any error of a broken archive."""
 
 
 class Refused(Exception):
-    """Says in a sentence why there is no going on."""
+    """Why reading can't go on, in a sentence."""
 
 
 def entries(
     archive: Path, *, name: str, aside: Path, left: UnpackLimits
 ) -> Iterator[ArchiveEntry]:
-    """Yield the files that an archive names; folders are left out.
+    """Yield the files that an archive lists, without folders.
 
-    `name` tells its kind. A tar is unpacked into `aside` first, and taken off what is `left`.
-    Raises Refused, and whatever Python's readers of archives raise at a broken one.
+    `name` shows the kind of archive. A tar is decompressed into `aside` first, and its size is
+    subtracted from `left`. Raises Refused, and whatever Python raises for a broken archive.
     """
     if name.lower().endswith('.zip'):
         yield from _zipped(archive)
@@ -75,7 +75,7 @@ def copy(source: IO[bytes], target: IO[bytes], *, most: int) -> bool:
 
 
 class _Careful(io.FileIO):
-    """A file of which nobody reads much at once, whatever lengths it claims to have."""
+    """A file from which a single read can't get much, whatever length the archive claims."""
 
     def read(self, size: int | None = -1) -> bytes:
         if size is not None and size > MAX_READ_BYTES:
@@ -100,7 +100,7 @@ def _zipped(archive: Path) -> Iterator[ArchiveEntry]:
 
 
 def _decoded(info: zipfile.ZipInfo) -> str:
-    """Return a name as it was meant: many programs write UTF-8 and do not say so."""
+    """Return a name in its real encoding: many programs write UTF-8 without the flag for it."""
     name = info.orig_filename
     if not info.flag_bits & 0x800:
         try:
@@ -111,7 +111,7 @@ def _decoded(info: zipfile.ZipInfo) -> str:
 
 
 def _local(date: tuple[int, int, int, int, int, int]) -> datetime | None:
-    """Return a zip's time, which is that of a wall clock, taken to be this machine's."""
+    """Return a zip's time in UTC: it has no zone, and is taken as this machine's local time."""
     try:
         return datetime(*date).astimezone(UTC)
     except (ValueError, OverflowError, OSError):
@@ -134,7 +134,7 @@ def _tarred(
                     problem = 'a link: only files are taken'
                 elif not info.isreg() or info.issparse():
                     problem = 'a device or the like: only files are taken'
-                # it returns None for what is no file, which has a problem
+                # extractfile returns None if it is not a file, but then there is a problem
                 content = cast('partial[IO[bytes]]', partial(box.extractfile, info))
                 yield ArchiveEntry(parts, utc_of(info.mtime), problem, content)
             raw.seek(box.offset)
@@ -144,7 +144,7 @@ def _tarred(
 
 
 def _lay_bare(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> None:
-    """Unpack a tar, which counts whatever comes of it: it may lie beside a thousand like it."""
+    """Decompress a tar; all its bytes count, because there may be a thousand like it."""
     most = min(left.bytes, left.tar_bytes)
     if most <= 0:
         raise Refused('not unpacked, because what came before it was too large together: a bomb?')
@@ -160,7 +160,7 @@ def _lay_bare(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> N
 
 
 def _parts(path: str) -> tuple[tuple[str, ...], str]:
-    """Split a path as Unix and Windows write it; say what is wrong with it."""
+    """Split a path of Unix or Windows into components; return what is wrong with it."""
     path = path.replace('\\', '/')
     parts = tuple(unicodedata.normalize('NFC', part) for part in path.split('/') if part)
     problem = ''

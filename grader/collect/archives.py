@@ -1,7 +1,7 @@
-"""Read archives that nobody vouches for: nothing in them chooses where a byte is written.
+"""Unpack archives of unknown origin: nothing in them decides where a file is written.
 
-Each file that is wanted is copied to a fresh name of ours in a folder of ours. The path that the
-archive gives is only ever read as text, so no link, no `..` and no device can lead anywhere.
+Each file that is wanted is copied to a new name that we choose, in a folder of ours. The path in
+the archive is only read as text, so a link, `..` or a device in it has no effect.
 """
 
 import lzma
@@ -21,7 +21,7 @@ from grader.common.errors import MACHINE_FULL
 from grader.common.text import shorten
 
 MAX_FILE_BYTES = 50_000_000
-"""A notebook with all its pictures has a few; one of over 20 MB is refused at grading."""
+"""A notebook with pictures has a few MB; one of over 20 MB is refused when it is graded."""
 
 _BROKEN: tuple[type[Exception], ...] = (
     zipfile.BadZipFile,
@@ -39,12 +39,12 @@ class Member:
     """One entry of an archive that is not a folder; without parts, the archive itself."""
 
     parts: tuple[str, ...]
-    """Its path, component by component."""
+    """Its path in the archive, component by component."""
     modified: datetime | None = None
     file: Path | None = None
-    """Where a copy of it lies, if it was wanted and nothing is wrong with it."""
+    """The path of its copy; None if it was not wanted or has a problem."""
     problem: str = ''
-    """Why it was not unpacked."""
+    """Why it was not unpacked, or ''."""
 
 
 def unpack(
@@ -55,9 +55,9 @@ def unpack(
     left: UnpackLimits,
     wanted: Callable[[tuple[str, ...]], bool],
 ) -> Iterator[Member]:
-    """Yield what an archive holds; copies of wanted files, told by their paths, lie in `aside`.
+    """Yield the entries of an archive; files whose path is `wanted` are copied into `aside`.
 
-    `name` tells the kind of archive. Raises OSError where the disk is full, and nothing else:
+    `name` shows the kind of archive. Raises OSError if the disk is full, and nothing else:
     whatever is wrong with the archive is the problem of a member.
     """
     try:
@@ -76,7 +76,7 @@ def unpack(
 
 
 def _copied(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path | None, str]:
-    """Copy an entry to a name of ours; return that, or why not."""
+    """Copy an entry to a new name in `aside`; return its path, or the problem."""
     most = min(MAX_FILE_BYTES, left.bytes)
     problem = f'over {most / 1e6:.0f} MB once unpacked: a bomb?'
     with tempfile.NamedTemporaryFile(dir=aside, delete=False) as target:
@@ -94,7 +94,7 @@ def _copied(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path 
 
 
 def _broken(error: Exception) -> str:
-    """Put into words what is wrong with an archive; raise it where the machine is full."""
+    """Describe what is wrong with an archive; re-raise if the disk or the memory is full."""
     if isinstance(error, OSError) and error.errno in MACHINE_FULL:
         raise error
     why = shorten(' '.join(str(error).split()), 100) or 'it ends too early'

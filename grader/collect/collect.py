@@ -1,7 +1,7 @@
-"""Take in what students handed in: match it, and put it where it is graded, overwriting nothing.
+"""Take in what students handed in: match it to students, copy it to where it is graded.
 
-The submission that counts lies in gradebook/submitted/STUDENT/ASSIGNMENT/. What it replaced lies
-in gradebook/submitted_before/STUDENT/ASSIGNMENT/NUMBER/, with the grade that it had.
+Nothing is overwritten. The submission that counts is in gradebook/submitted/STUDENT/ASSIGNMENT/.
+What it replaced is in gradebook/submitted_before/STUDENT/ASSIGNMENT/NUMBER/, with its grade.
 """
 
 import shutil
@@ -36,17 +36,17 @@ from grader.storage.records import CellScore, records
 from grader.storage.submitted import known_students
 
 NEW, AGAIN, EARLIER, KNOWN = 'new', 'again', 'earlier', 'known'
-"""What became of a submission: the first one, a later one, an earlier one, one that was there."""
+"""Outcomes of a submission: the first one, a later one, an earlier one, one already there."""
 LEFT, UNUSED = 'left', 'unused'
-"""What was not taken: a person should look at it, or nobody would have graded it."""
+"""Outcomes of a file that was not taken: a person should look at it, or it is not graded."""
 
 
 @dataclass(frozen=True)
 class FileOutcome:
-    """What the run says of one file."""
+    """What the run reports about one file."""
 
     path: str
-    """Where it lies within what was collected."""
+    """Its path within what was collected."""
     outcome: str
     reason: str = ''
     student_id: str = ''
@@ -55,11 +55,11 @@ class FileOutcome:
 
 
 def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterator[FileOutcome]:
-    """Take in a folder, an archive or a notebook; yield a row for each file, those left last.
+    """Take in a folder, an archive or a notebook; yield an outcome for each file, untaken last.
 
-    Nothing is written but under gradebook/, and `source` stays as it is. Doing it again changes
-    nothing. `file_times` takes a file's time for the time it was handed in, where nothing else
-    tells. Raises CourseError where `source` is nothing of the kind, and where the disk is full.
+    Only gradebook/ is written to; `source` is not changed. Collecting again changes nothing. If
+    nothing else says when a file was handed in, `file_times` uses its modification time. Raises
+    CourseError if `source` can't be collected, or if the disk is full.
     """
     _refuse_the_course(course, source.resolve())
     grades = cache(lambda: records(course))
@@ -94,7 +94,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
 
 
 def _refuse_the_course(course: Course, source: Path) -> None:
-    """Raise CourseError if `source` has the lessons in it: `zh_CN` would become a student."""
+    """Raise CourseError if `source` contains the lessons: `zh_CN` would become a student."""
     root = course.root.resolve()
     lessons = [root / name for name in ('notebooks', 'solutions')]
     if root.is_relative_to(source) or any(map(source.is_relative_to, lessons)):
@@ -115,7 +115,7 @@ def _row(
         if error.errno in DISK_FULL:
             raise
         outcome, reason = LEFT, f'{error.strerror}: {error.filename}'
-    except TaskFailed as why:  # what lies in its place already is too much
+    except TaskFailed as why:  # the folder of the earlier submission is too large
         outcome, reason = LEFT, str(why)
     whose = (each.student_id, each.assignment)
     return FileOutcome(each.notebook.path, outcome, reason, *whose, each.handed_in)
@@ -124,7 +124,7 @@ def _row(
 def take(
     course: Course, each: MatchedFile, grades: Callable[[], list[CellScore]]
 ) -> tuple[str, str]:
-    """Put a submission in its place; return what became of it, and why."""
+    """Copy a submission to its folder in submitted/; return the outcome and its reason."""
     place = course.folder('submitted', each.student_id, each.assignment)
     shelf = course.folder('submitted_before', each.student_id, each.assignment)
     files = dict(_files(each))
@@ -147,7 +147,7 @@ def take(
             shelf,
         )
         return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
-    if there not in contents_of_earlier(shelf):  # else an earlier run was ended right after that
+    if there not in contents_of_earlier(shelf):  # else a run was killed right after keeping it
         put_numbered(lambda folder: _copy_all(course, each, folder, grades), shelf)
     put_whole(writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place)
     return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
@@ -161,7 +161,7 @@ def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:
 def _copy_all(
     course: Course, each: MatchedFile, folder: Path, grades: Callable[[], list[CellScore]]
 ) -> None:
-    """Copy what there is of a submission: its files, what came of them, and its scores."""
+    """Copy all of a submission: its files, its graded notebook and feedback, and its scores."""
     for step in ('submitted', 'autograded', 'feedback'):
         there = course.folder(step, each.student_id, each.assignment)
         if there.is_dir():

@@ -1,4 +1,4 @@
-"""Put into lines what `./course collect` has taken, and what it has not."""
+"""Format what `./course collect` has taken, and what it has not, as lines of text."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
@@ -10,11 +10,11 @@ from grader.common.text import columns, pad, printable, shorten
 
 WORDS = {NEW: 'new', AGAIN: 'handed in again', EARLIER: 'an earlier one', KNOWN: 'there already'}
 SHOWN = 3
-"""Files of one folder with one reason are counted once they are more."""
+"""If more files of a folder have the same reason, only their number is shown."""
 MOST_OF_ONE = 12
-"""Lines about one folder; its student can make up as many reasons as files."""
+"""The most lines about one folder: a student can cause as many reasons as files."""
 MAX_COLUMNS = 120
-"""Of a path: it may be 5,000 characters long, and all lines of a table are as wide as one."""
+"""The most columns of a path: it can have 5,000 characters, and widens all lines of a table."""
 
 
 def lines(rows: Iterable[FileOutcome], source: Path) -> Iterator[str]:
@@ -46,7 +46,7 @@ def _taken(row: FileOutcome) -> tuple[str, ...]:
 
 
 def _gathered(rows: list[FileOutcome]) -> Iterator[tuple[str, str]]:
-    """Yield files and reasons; many of one kind in one place are counted."""
+    """Yield paths and reasons; files with the same reason in one top folder are counted."""
     alike = defaultdict(list)
     for row in rows:
         alike[row.path.split('/')[0] if '/' in row.path else '', row.reason].append(row.path)
@@ -58,7 +58,7 @@ def _gathered(rows: list[FileOutcome]) -> Iterator[tuple[str, str]]:
 
 
 def _few_alike(left: list[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-    """Yield paths and reasons; of many alike in one folder the first ones, and how many more."""
+    """Yield paths and reasons; many alike in a folder are shown as the first few and a number."""
     parts = [path.split('/') for path, _ in left]
     shared = len(shared_folders([tuple(each[:-1]) for each in parts]))
     folders: dict[str, dict[str, list]] = defaultdict(lambda: defaultdict(list))

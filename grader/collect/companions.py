@@ -1,4 +1,4 @@
-"""What goes with a student's notebook: files that lie beside it, and the packages it asks for."""
+"""What belongs to a student's notebook: files beside it, and the packages that it needs."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,42 +22,42 @@ from grader.notebook.submission import SECRET, TIMESTAMP
 
 @dataclass(frozen=True)
 class Companions:
-    """What goes with one notebook."""
+    """What belongs to one notebook."""
 
     modules: Mapping[str, Incoming]
-    """The student's Python files beside it, by name."""
+    """The student's Python files in the same folder, by name."""
     packages: Mapping[str, tuple[IncomingPackage, ChosenFiles]]
-    """By the package's name: where it lies, and what is taken of it."""
+    """By the package's name: where it is, and which of its files are taken."""
     stamp: Incoming | None
-    """nbgrader's file with the time."""
+    """nbgrader's timestamp.txt."""
     secret: Incoming | None
-    """nbgrader's, which names the page of feedback in the exchange."""
+    """nbgrader's secret file, which determines the name of the feedback page in the exchange."""
     foreign: Mapping[Incoming, str]
-    """Why files beside it are another user's."""
+    """Files beside it that another user put there, with the reason why they are not taken."""
 
     def extra(self) -> dict[str, Path]:
-        """Return the modules, by name, and the files of packages, by path."""
+        """Return modules, by name, and files of packages, by path in the submission."""
         extra = {name: each.readable for name, each in self.modules.items()}
         for _, chosen in self.packages.values():
             extra |= chosen.taken
         return extra
 
     def changed(self) -> list[datetime]:
-        """Return when Linux last saw each of them change, of those that a student wrote."""
+        """Return the change times (ctime) of the files that students themselves put there."""
         of_modules = [each.changed for each in self.modules.values() if each.changed]
         return of_modules + [at for _, chosen in self.packages.values() for at in chosen.changed]
 
     def stamped(self) -> datetime | None:
-        """Return the time in nbgrader's file, unless a student wrote it."""
+        """Return the time in timestamp.txt, unless a student wrote that file."""
         return date_of(self.stamp.readable) if self.stamp and not self.stamp.login else None
 
     def left_out(self) -> tuple[str, ...]:
-        """Return what the student is told of files that were not taken."""
+        """Return what the student is told about files that were not taken."""
         chosen = {name: files for name, (_, files) in self.packages.items()}
         return tuple(clause for name, files in chosen.items() for clause in files.clauses(name))
 
     def used(self) -> set[Incoming]:
-        """Return the files beside the notebook that are used for it."""
+        """Return the files beside the notebook that are used with it."""
         is_date = self.stamp is not None and date_of(self.stamp.readable) is not None
         others = self.stamp if is_date else None, self.secret
         return {*self.modules.values(), *(each for each in others if each)}
@@ -71,9 +71,9 @@ def find_companions(
     asked_for: Iterable[str],
     packages: Mapping[tuple, Sequence[IncomingPackage]],
 ) -> Companions:
-    """Return what goes with a notebook, of what lies `beside` it and of `packages` by their key.
+    """Return what belongs to a notebook, from the files `beside` it and from `packages`, by key.
 
-    `asked_for`: the names of the packages that are handed in with it.
+    `asked_for` are the names of the packages that are handed in with it.
     """
     has_folder = bool(owner.by_folder or notebook.archive)
     reasons = {each: why_not_theirs(each, owner.student_id) for each in beside.values()}

@@ -1,4 +1,4 @@
-"""A file that came in: its path, where it can be read, and what is wrong with it."""
+"""A collected file: its path, where it can be read, and what is wrong with it."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,43 +9,43 @@ LITTER = {'__MACOSX', '__pycache__', 'Thumbs.db', 'desktop.ini'}
 
 @dataclass(frozen=True)
 class Incoming:
-    """A file that came in, wherever it lay."""
+    """A collected file, from a folder or an archive."""
 
     parts: tuple[str, ...]
-    """Its path within what was collected; archives are folders here."""
+    """Its path within what was collected; an archive counts as a folder."""
     file: Path | None = None
-    """Where it can be read; None where it is not wanted, or has a problem."""
+    """Where it can be read; None if it is not wanted, or has a problem."""
     modified: datetime | None = None
-    """When it, or the archive it came in, was written."""
+    """When it, or the archive that contained it, was last modified."""
     problem: str = ''
-    """Why it can't be read."""
+    """Why it can't be read, or ''."""
     archive: int = 0
-    """How many of its parts lead to a student's archive and name it; 0 where there is none."""
+    """How many of its parts are the path of the student's archive; 0 if it was in none."""
     login: str = ''
-    """The user of this machine whose it is, where neither we nor a platform put it there."""
+    """The user of this machine who put it there; '' for the grader's user or a platform's."""
     changed: datetime | None = None
-    """When Linux last saw such a user change it, or a folder of theirs around it."""
+    """The last change (ctime) of it, or of that user's folder around it; None without a login."""
 
     @property
     def path(self) -> str:
-        """Return its path as one text."""
+        """Return its path as one string."""
         return '/'.join(self.parts)
 
     @property
     def readable(self) -> Path:
-        """Where it can be read; only of what is wanted and has no problem."""
+        """Return where it can be read; only for a wanted file without a problem."""
         assert self.file is not None
         return self.file
 
     @property
     def litter(self) -> bool:
-        """Whether an editor or a desktop left it there, not a person."""
+        """Whether a program left it there, such as an editor or a desktop."""
         hidden = any(part.startswith('.') or part in LITTER for part in self.parts)
         return hidden and not self.problem
 
 
 def as_json(each: Incoming) -> dict:
-    """Return a file that came in as JSON."""
+    """Return a collected file in a form that JSON can hold."""
     return vars(each) | {
         'file': each.file and str(each.file),
         'modified': each.modified and each.modified.isoformat(),
@@ -54,7 +54,7 @@ def as_json(each: Incoming) -> dict:
 
 
 def from_json(said: dict) -> Incoming:
-    """Return what `as_json` was given."""
+    """Return the file that `as_json` was given."""
     return Incoming(
         parts=tuple(said['parts']),
         file=said['file'] and Path(said['file']),
@@ -67,5 +67,5 @@ def from_json(said: dict) -> Incoming:
 
 
 def is_notebook(each: Incoming) -> bool:
-    """Whether a file is a notebook that can be read."""
+    """Whether it is a notebook without a problem."""
     return not each.problem and each.parts[-1].lower().endswith('.ipynb')

@@ -1,8 +1,7 @@
-"""Read a folder in which others may write meanwhile: each file is opened once, and copied.
+"""Read a folder in which other users may write meanwhile: each file is opened once, and copied.
 
-Whatever is asked of a file is asked of the one that is open: a name may lead elsewhere a moment
-later. The user whose it is, which nobody can choose, comes with it; so does the time at which
-Linux last saw it changed, which nobody can set.
+Everything is checked on the open file: a moment later, its name may refer to another file. The
+result has the file's owner and its change time (ctime), which its owner can't choose.
 """
 
 import os
@@ -26,47 +25,47 @@ LINK = 'a link: only files are taken'
 DEVICE = 'a device or the like: only files are taken'
 CHANGED = 'it was changed while it was read: collect again'
 MAX_ARCHIVE_BYTES = 500_000_000
-"""A whole class's has less, and lies in a folder of nobody's but the teacher's."""
+"""A whole class's archive is smaller, and is in a folder that only the teacher writes to."""
 ONE = {'files': 5_000, 'bytes': 200_000_000}
-"""One student's archive or folder, with all that the course's own bundle holds."""
+"""Limits for one student's archive or folder, which may include the course's whole bundle."""
 _FLAGS = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
 _CHUNK = 1 << 20
 
 
 @dataclass(frozen=True)
 class _Within:
-    """What is known of the folder in which something lies."""
+    """What is known about the folder that contains an entry."""
 
     descriptor: int
     parts: tuple[str, ...]
     trusted: frozenset[int]
-    """Users whose files are named by a person or a platform: ours, root, the outermost folder's
-    owner."""
+    """Users whose files a person or a platform named: ours, root, the owner of the outermost
+    folder."""
     is_shared: bool
     """Whether users besides its owner may write there."""
     uid: int | None = None
-    """Whose all of it has to be, below something of somebody else's."""
+    """The user who must own everything in it, below an entry of an untrusted user; else None."""
     changed: float = 0.0
-    """When it, or a folder around it, was last changed, where somebody else owns it."""
+    """The latest ctime of it and the folders around it that belong to an untrusted user."""
 
 
 @dataclass(frozen=True)
 class LiveFolder:
-    """How a folder is read: where copies go, how much of it, and which files are wanted."""
+    """Reads a folder: where copies go, how much may be read, and which files are wanted."""
 
     aside: Path
     left: UnpackLimits
     wanted: Callable[[tuple[str, ...]], bool]
 
     def read(self, folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
-        """Yield the files of a folder, copied; nothing but `folder` itself may be a link."""
+        """Yield copies of the files in a folder; only `folder` itself may be a link."""
         with _closing(os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)) as descriptor:
             yield from self._entries(_outermost(descriptor, above))
 
     def read_entry(
         self, folder: Path, name: str, *, trusted: Iterable[int] = ()
     ) -> Iterator[Incoming]:
-        """Yield what lies under one name in a folder; `trusted` users may have chosen it."""
+        """Yield what one name in a folder refers to; `trusted` users may have chosen the name."""
         with _closing(os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)) as descriptor:
             yield from self._entry(_outermost(descriptor, (), trusted), name)
 
@@ -85,7 +84,7 @@ class LiveFolder:
             yield bare
             return
         try:
-            # a device does something when it is opened: look first, and look again at what is open
+            # opening a device can have effects: check before, and again on the open file
             if problem := _problem_of_kind(os.lstat(name, dir_fd=within.descriptor).st_mode):
                 yield Incoming(parts, problem=problem)
                 return
@@ -93,7 +92,7 @@ class LiveFolder:
                 yield from self._opened(within, parts, descriptor)
         except PermissionError:
             yield Incoming(parts, problem='it must not be read: see its permissions')
-        except OSError as error:  # it is gone or a link meanwhile, or the disk is damaged
+        except OSError as error:  # it was removed or replaced by a link, or the disk is damaged
             if error.errno in MACHINE_FULL:
                 raise
             yield Incoming(parts, problem=f'it can not be read: {error.strerror}')

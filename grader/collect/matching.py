@@ -1,4 +1,4 @@
-"""Whose file it is: student, assignment and time, read off where it lay and how it is named."""
+"""Match notebooks to student, assignment and time, by their paths and names."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,7 +20,7 @@ from grader.notebook.submission import SECRET, TIMESTAMP
 
 @dataclass(frozen=True)
 class MatchedFile:
-    """One assignment of one student, as it came in."""
+    """One submission of one student for one assignment, as it came in."""
 
     student_id: str
     assignment: str
@@ -28,15 +28,15 @@ class MatchedFile:
     extra: dict[str, Path] = field(default_factory=dict)
     """The student's Python files beside it, by name, and those of packages, by path."""
     handed_in: datetime | None = None
-    """In UTC; None where nothing tells."""
+    """In UTC; None if nothing says when."""
     label: PlatformLabel | None = None
-    """What a course platform said of the student."""
+    """What a course platform wrote about the student into a name."""
     remark: str = ''
-    """What a person may want to look at, although it was taken."""
+    """What a person may want to check, although it was taken."""
     secret: Path | None = None
-    """nbgrader's, which names the page of feedback in the exchange."""
+    """nbgrader's secret file, which determines the name of the feedback page in the exchange."""
     left_out: tuple[str, ...] = ()
-    """What its student is told of files that were not taken."""
+    """What the student is told about files that were not taken."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class UntakenFile:
     incoming: Incoming
     reason: str
     matters: bool = True
-    """Whether a person should look at it; else nobody would grade it anyway."""
+    """Whether a person should look at it; if not, it would not be graded anyway."""
 
 
 def match(
@@ -57,11 +57,11 @@ def match(
     students: Iterable[str] = (),
     file_times: bool = False,
 ) -> tuple[list[MatchedFile], list[UntakenFile]]:
-    """Sort what came in: submissions, each student's in their order, and the rest with reasons.
+    """Split what came in into submissions, sorted by time for each student, and untaken files.
 
-    `packages` are the ROS packages that are handed in with each assignment. `students` are those
-    who are known from before. `file_times` takes the time of a file for the
-    time it was handed in, where nothing else tells.
+    `packages` are the ROS packages that are handed in with each assignment, `students` those who
+    are known already. If nothing else says when a file was handed in, `file_times` uses its
+    modification time.
     """
     asked_for = {name: tuple(several) for name, several in (packages or {}).items()}
     found, folders = split(found, {each for several in asked_for.values() for each in several})
@@ -114,10 +114,10 @@ def match(
 def _handed_in(
     notebook: Incoming, owner: Owner, with_it: Companions, *, file_times: bool
 ) -> datetime | None:
-    """Return when it was handed in; None if nothing tells.
+    """Return when it was handed in; None if nothing says so.
 
-    In a folder into which students write, names and `timestamp.txt` could claim any time, and any
-    of the files could be edited later: there, Linux's times count alone.
+    If students write into the folder, names and `timestamp.txt` could claim any time, and files
+    could be edited later: then only the files' change times (ctime) count.
     """
     if notebook.changed:
         return max([notebook.changed, *with_it.changed()])
@@ -127,7 +127,7 @@ def _handed_in(
 
 
 def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
-    """Say why a file that lies beside notebooks goes with none of them."""
+    """Return why a file that is beside notebooks does not belong to any of them."""
     if each.parts[-1] == SECRET:
         return UntakenFile(each, 'a secret of no submission from the exchange', matters=False)
     if each.parts[-1] != TIMESTAMP:
@@ -143,7 +143,7 @@ def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
 
 
 def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[MatchedFile]:
-    """Sort by student, assignment and time; what can't be put in an order joins the rest."""
+    """Sort by student, assignment and time; submissions in no clear order are added to `rest`."""
     whose: dict[tuple[str, str], list[MatchedFile]] = defaultdict(list)
     for each in hand_ins:
         whose[each.student_id, each.assignment].append(each)
@@ -166,11 +166,11 @@ def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[Matc
 
 
 def _all_alike(several: list[MatchedFile]) -> bool:
-    """Whether they hold the same; not where that can't be read."""
+    """Whether all have the same content; False if a file can't be read."""
     try:
         return len({_content(each) for each in several}) == 1
     except OSError:
-        return False  # each of them is left to a person, with its path
+        return False  # then each of them is listed as not taken, with its path
 
 
 def _content(each: MatchedFile) -> bytes:

@@ -1,4 +1,4 @@
-"""The forms of names that tell a student and an assignment: STUDENT_ASSIGNMENT, the exchange's."""
+"""Names that contain a student and an assignment: STUDENT_ASSIGNMENT, and the exchange's."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -8,12 +8,12 @@ from grader.collect.archive_entries import ARCHIVE
 from grader.collect.platforms import label_in
 
 _BETWEEN = '_+- .'
-"""What may stand between a student's name and an assignment's."""
+"""Characters that may separate a student's name from an assignment's."""
 
 
 @dataclass(frozen=True)
 class AssignmentName:
-    """A name that ends with an assignment's."""
+    """A name that ends with that of an assignment."""
 
     who: str
     what: str
@@ -21,13 +21,13 @@ class AssignmentName:
 
 @dataclass(frozen=True)
 class ExchangeName(AssignmentName):
-    """The name of a folder of nbgrader's exchange."""
+    """The name of a folder in nbgrader's exchange."""
 
     when: str
 
 
 class NameForms:
-    """Names that hold one of the assignments'."""
+    """Parses names that contain the name of one of the assignments."""
 
     def __init__(self, assignments: Iterable[str]) -> None:
         self._known = sorted(assignments, key=len, reverse=True)
@@ -37,9 +37,9 @@ class NameForms:
         )
 
     def named(self, name: str) -> AssignmentName | None:
-        """Split STUDENT_ASSIGNMENT, and STUDENT_ASSIGNMENT-1; None where it is no such name.
+        """Split STUDENT_ASSIGNMENT or STUDENT_ASSIGNMENT-1; None if the name has another form.
 
-        A regular expression would take a time that grows with the square of a name's length.
+        A regular expression would take time proportional to the square of the name's length.
         """
         for whole in (name, re.sub(r'(?<=\w)-\d+$', '', name)):
             for what in self._known:
@@ -49,30 +49,30 @@ class NameForms:
         return None
 
     def exchanged(self, name: str) -> ExchangeName | None:
-        """Split STUDENT+ASSIGNMENT+TIME; None where it is no such name."""
+        """Split STUDENT+ASSIGNMENT+TIME; None if the name has another form."""
         found = self._exchange.fullmatch(name)
         return ExchangeName(found['who'], found['what'], found['when']) if found else None
 
     def who(self, name: str) -> str:
-        """Return whom a folder or an archive may be named after."""
+        """Return the student whom the name of a folder or an archive may contain."""
         found = label_in(name) or self.exchanged(name) or self.named(bare(name))
         return found.who if found else bare(name)
 
 
 def stem_of(name: str) -> str:
-    """Return a notebook's name without its ending, and what a browser put before that."""
+    """Return a notebook's name without .ipynb and a browser's ` (1)` before it."""
     return re.sub(r' \(\d+\)$', '', name[: -len('.ipynb')])
 
 
 def bare(name: str) -> str:
-    """Return a folder's or an archive's name without what a program added at its end."""
+    """Return a folder's name, or an archive's without its ending and a browser's ` (1)`."""
     if not ARCHIVE.search(name):
         return name
     return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))
 
 
 def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the folders in which everything lies."""
+    """Return the path of folders that all of these folders have in common."""
     if not folders:
         return ()
     low, high = min(folders), max(folders)

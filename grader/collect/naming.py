@@ -1,7 +1,7 @@
-"""What names of files and folders tell of a notebook: its student, its assignment and its time.
+"""Find student, assignment and time of a notebook from the names of its file and folders.
 
-The outermost folder, archive or file that a person or a course platform named decides.
-What lies in it was named by the student: that may agree, and never makes it somebody else's.
+The outermost folder, archive or file that a person or a course platform named decides. Names
+inside it were chosen by the student: they may agree, but never make it another student's.
 """
 
 import re
@@ -17,7 +17,7 @@ from grader.common.dates import date_in
 from grader.common.student_names import UnclearOwner, is_nobody, same_person
 
 _AGAIN = re.compile(r'-\d+(?=$|\.(zip|tar|tgz|tbz2|txz)\b)', re.IGNORECASE)
-"""What a platform puts behind the name of what is handed in again."""
+"""What a platform appends to a name when a student hands in again."""
 EXPECTED = (
     'expected STUDENT_ASSIGNMENT.ipynb, STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb or an archive named '
     'after the student'
@@ -27,24 +27,24 @@ _SEVERAL = "collect the folder by itself in which the students' folders lie, or 
 
 @dataclass(frozen=True)
 class Owner:
-    """Whose a notebook is, as far as names tell."""
+    """The owner of a notebook, as far as names say."""
 
     student_id: str
     assignment: str
     by_folder: bool
-    """Whether all that lies in its folder is theirs."""
+    """Whether everything in its folder belongs to this student."""
     handed_in: datetime | None = None
-    """In UTC; None where its name tells no time."""
+    """In UTC; None if its name contains no time."""
     label: PlatformLabel | None = None
-    """What a course platform said of the student."""
+    """What a course platform wrote about the student into a name."""
     above: tuple[str, ...] = ()
-    """What the folder, archive or file that decided lies in."""
+    """The folders around the folder, archive or file that decided."""
     inside: tuple[str, ...] = ()
-    """The folders and archives in that one, down to the notebook."""
+    """The folders and archives inside that one, down to the notebook."""
 
 
 class Naming:
-    """How the files and folders of what came in are named."""
+    """Interprets the names of all collected files and folders."""
 
     def __init__(
         self,
@@ -52,7 +52,7 @@ class Naming:
         assignments: Iterable[str],
         students: Iterable[str] = (),
     ) -> None:
-        """Look at all that came in; `students` are those who are known from before."""
+        """Look at all collected files; `students` are those who are known already."""
         self._known = frozenset(assignments)
         self._forms = NameForms(self._known)
         notebooks = [each for each in found if is_notebook(each)]
@@ -62,17 +62,17 @@ class Naming:
         self._several = len({name.who for name in named if name}) > 1
 
     def owner(self, each: Incoming) -> Owner:
-        """Return whose notebook it is. Raises UnclearOwner."""
+        """Return the owner of a notebook. Raises UnclearOwner."""
         at = self._decides(each)
         if at is None:
             return self._owner_by_file_name(each)
         name, above, inside = each.parts[at], each.parts[:at], each.parts[at + 1 : -1]
         label = label_in(name)
         stem = stem_of(each.parts[-1])
-        if at == len(each.parts) - 1:  # no folder, and the file's name begins with the label
+        if at == len(each.parts) - 1:  # the file itself decides; the label precedes its name
             assert label is not None
             stem = stem_of(label.rest)
-        elif label and label.rest:  # what the student called that folder or archive
+        elif label and label.rest:  # the student's own name for that folder or archive
             inside = (_AGAIN.sub('', label.rest), *inside)
         if label and label.platform.numbers_copies:
             stem = _AGAIN.sub('', stem)
@@ -103,34 +103,34 @@ class Naming:
         )
 
     def claims(self, owner: Owner) -> Iterator[tuple[str, bool]]:
-        """Yield whom else the names inside an upload may name, and whether that is their form."""
+        """Yield other students named in an upload, and if the name has a student's form."""
         for name in owner.inside:
             who = self._forms.who(name)
             if not self._may_name(who, owner.student_id):
                 yield who, who != bare(name)
 
     def _may_name(self, who: str, *students: str) -> bool:
-        """Whether a folder of that name may be one of these students': it names no other one."""
+        """Whether a folder's name may belong to these students: it does not name another one."""
         ours = (same_person(who, student) for student in students)
         return who in self._known or is_nobody(who) or any(ours)
 
     def _expect_no_class(self, student: str, label: PlatformLabel, folders: Sequence[str]) -> None:
-        """Raise UnclearOwner where a folder, named like an unpacked upload, may hold a class."""
+        """Raise UnclearOwner if a folder named like an upload may contain a class."""
         for who in map(self._forms.who, folders):
             if not self._may_name(who, student, label.rest):
                 raise UnclearOwner(f'it may be of {student} or of {who}: {_SEVERAL}')
 
     def _decides(self, each: Incoming) -> int | None:
-        """Return which part of its path says whose it is; None where only the file's name does.
+        """Return the index of the path component that decides; None if only the file's name does.
 
-        Raises UnclearOwner where there may be several.
+        Raises UnclearOwner if several may.
         """
         if self._by_platform:
             return self._first_by_platform(each)
         folders = each.parts[: each.archive] or each.parts[:-1]
         candidates = self._candidates(folders, self._shared)
         if not candidates and not (self._several and not each.archive):
-            candidates = self._candidates(folders, 0)  # all that came in may be one student's
+            candidates = self._candidates(folders, 0)  # all files may be of the same student
         if not candidates:
             if each.archive:
                 raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
@@ -144,7 +144,7 @@ class Naming:
         return first
 
     def _candidates(self, folders: Sequence[str], start: int) -> list[int]:
-        """Return which folders may be named after a student, from one of them on."""
+        """Return the indexes of folders, from `start` on, that may be named after a student."""
         names = [(at, bare(folder)) for at, folder in enumerate(folders) if at >= start]
         return [at for at, name in names if name not in self._known and not is_nobody(name)]
 
@@ -154,7 +154,7 @@ class Naming:
         if stem in self._known:
             raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
         named = self._forms.named(stem)
-        assert named is not None  # else it had no assignment
+        assert named is not None  # or _assignment would have raised
         student = student_in(named.who)
         return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
 
@@ -175,9 +175,10 @@ class Naming:
         return assignment
 
     def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:
-        """Whether course platforms or the exchange made all of it, in folders of the teacher's.
+        """Whether platforms or the exchange named all notebooks, in folders that the teacher made.
 
-        Folders of students, in which they may imitate that, would lie beside others' or be known.
+        A student's own folder could contain an imitation of such names. Then it would be beside
+        other such folders, or have the name of a known student.
         """
         decides = [self._first_by_platform(each) for each in notebooks]
         if None in decides:
@@ -190,7 +191,7 @@ class Naming:
         )
 
     def _first_by_platform(self, each: Incoming) -> int | None:
-        """Return which part a platform or nbgrader's exchange named, the outermost one."""
+        """Return the index of the outermost component that a platform or the exchange named."""
         for at, part in enumerate(each.parts[: each.archive] or each.parts):
             if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
                 return at

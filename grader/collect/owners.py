@@ -1,4 +1,4 @@
-"""Whose each notebook is, and which of them can be nobody's: names that disagree, or namesakes."""
+"""The owner of each notebook; a notebook is refused if names disagree or students share a name."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +11,7 @@ from grader.common.student_names import UnclearOwner, spellings
 def find_owners(
     found: Sequence[Incoming], assignments: Iterable[str], students: Iterable[str]
 ) -> tuple[dict[Incoming, Owner], dict[Incoming, str], dict[Incoming, str]]:
-    """Return whose each notebook is, what is strange about it, and why the rest are nobody's."""
+    """Return each notebook's owner, remarks on strange names, and why others have no owner."""
     owners: dict[Incoming, Owner] = {}
     problems: dict[Incoming, str] = {}
     students = list(students)
@@ -40,9 +40,9 @@ def find_owners(
 
 
 def why_not_theirs(each: Incoming, student: str) -> str:
-    """Say why a file that lies beside a student's notebook is not taken with it; '' where it is.
+    """Return why a file beside a student's notebook is not taken with it; '' if it is taken.
 
-    Others may write into a folder of the teacher's, too.
+    Other users may have write access to the teacher's folder.
     """
     if each.login in ('', student):
         return ''
@@ -50,7 +50,7 @@ def why_not_theirs(each: Incoming, student: str) -> str:
 
 
 def _checked(each: Incoming, owner: Owner) -> Owner:
-    """Return an owner. Raises UnclearOwner where the file is of a user of another name."""
+    """Return the owner. Raises UnclearOwner if the file belongs to a user of another name."""
     if each.login in ('', owner.student_id):
         return owner
     raise UnclearOwner(
@@ -60,9 +60,9 @@ def _checked(each: Incoming, owner: Owner) -> Owner:
 
 
 def _namesakes(owner: Owner) -> tuple:
-    """Return what two owners have in common who may be two persons of one name.
+    """Return a key; two owners with the same key and different numbers are two persons.
 
-    In one download Moodle numbers each of them; Canvas's number is the same in each download.
+    Moodle numbers each student of one download; Canvas's number is the same in each download.
     """
     if owner.label is None:
         return (owner.student_id, owner.above, owner.assignment, None)
@@ -75,7 +75,7 @@ def _namesakes(owner: Owner) -> tuple:
 
 
 def _of_several(owner: Owner) -> str:
-    assert owner.label is not None  # it has the number
+    assert owner.label is not None  # only a label has a number
     return (
         f'there are several {owner.student_id} with different numbers, this one is '
         f'{owner.label.number}: rename the folders so that each has a name of its own'
@@ -83,15 +83,15 @@ def _of_several(owner: Owner) -> str:
 
 
 def _other_spelling(student: str, known: Mapping[str, set[str]]) -> str:
-    """Say that another student's name may be this one's: their scores would stand apart."""
+    """Return a remark if another name may be this student's: the scores would be separate."""
     alike = set().union(*(known[spelling] for spelling in spellings(student))) - {student}
     return f'not the same as {", ".join(sorted(alike))}: if it is, rename one' if alike else ''
 
 
 def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
-    """Compare the names inside an upload with its owner's; return a remark, and a problem.
+    """Compare the names inside an upload with its owner's; return a remark and a problem.
 
-    `known` are all students, by how their names may be spelled.
+    `known` has all students, by the spellings of their names.
     """
     whose, remark = owner.student_id, ''
     for who, surely in naming.claims(owner):

@@ -1,4 +1,4 @@
-"""ROS packages among what came in: folders or archives beside the notebook that asks for them."""
+"""ROS packages in what was collected: folders or archives beside the notebook that needs them."""
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
@@ -23,33 +23,33 @@ class IncomingPackage:
 
     name: str
     at: tuple[str, ...]
-    """Where it lies."""
+    """The path of the folder that contains it."""
     number: str
-    """The number that a course platform gave its student, where it is an upload of its own."""
+    """The number that a platform gave its student, if the package is a separate upload."""
     members: list[Incoming]
     root: tuple[str, ...]
-    """The path of its folder."""
+    """The path of the package's own folder."""
 
     @property
     def key(self) -> tuple:
-        """Return what a notebook has in common with it."""
+        """Return a key that the package shares with its notebook."""
         return (self.name, self.at, self.number)
 
 
 @dataclass
 class ChosenFiles:
-    """What is taken of a package, and what is not."""
+    """Which files of a package are taken, and which are not."""
 
     taken: dict[str, Path] = field(default_factory=dict)
-    """By path: 'arm_player/setup.py'."""
+    """By path in the submission: 'arm_player/setup.py'."""
     changed: list[datetime] = field(default_factory=list)
-    """When Linux last saw each of them change, where a student wrote it."""
+    """The change time (ctime) of each file that a student put there."""
     left: list[tuple[Incoming, str]] = field(default_factory=list)
     problem: str = ''
-    """Why none of it is taken."""
+    """Why no file of it is taken, or ''."""
 
     def clauses(self, package: str) -> list[str]:
-        """Return what its student is told."""
+        """Return what the student is told."""
         if self.problem:
             return [f'the package `{package}` was not collected: {self.problem}']
         told = [package_files.told(each.path, reason) for each, reason in self.left]
@@ -60,9 +60,9 @@ class ChosenFiles:
 def split(
     found: Sequence[Incoming], packages: Collection[str]
 ) -> tuple[list[Incoming], list[IncomingPackage]]:
-    """Tell what lies in packages from the rest: a folder of such a name beside a notebook.
+    """Separate packages from other files: a package is a folder of such a name beside a notebook.
 
-    No notebook in it is one that is handed in.
+    A notebook inside a package is not a submission.
     """
     notebooks = [each for each in found if is_notebook(each)]
     folders = {each.parts[:-1] for each in notebooks}
@@ -77,13 +77,13 @@ def split(
 
 
 def number_of(notebook: Incoming) -> str:
-    """Return the number of the upload that a notebook is by itself; '' where it is none."""
+    """Return the platform's number in a notebook's name, if it is a separate upload; else ''."""
     label = label_in(notebook.parts[-1])
     return label.number if label else ''
 
 
 def choose(package: IncomingPackage, student: str) -> ChosenFiles:
-    """Choose what is taken of a student's package: the same as their own notebook builds."""
+    """Choose the files of a student's package: the same that a build in the notebook uses."""
     chosen = ChosenFiles()
     files: dict[str, Incoming] = {}
     for each in package.members:
@@ -108,7 +108,7 @@ def choose(package: IncomingPackage, student: str) -> ChosenFiles:
 
 
 def matters(reason: str) -> bool:
-    """Whether a person should look at what was left out: not where a program made it."""
+    """Whether a person should look at a file that was left out: not if a program made it."""
     return not reason.startswith(('hidden', 'left behind', 'made by'))
 
 
@@ -127,7 +127,7 @@ def _package(path: tuple[str, ...], members: list[Incoming]) -> IncomingPackage:
     manifests = {each.parts for each in members}
     root: tuple[str, ...] = path
     if ARCHIVE.search(top) and (*path, 'package.xml') not in manifests:
-        root = (*path, name)  # the archive holds the folder, as most programs make it
+        root = (*path, name)  # most programs put the folder itself into the archive
     return IncomingPackage(name, tuple(at), label.number if label else '', members, root)
 
 
@@ -144,7 +144,7 @@ def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> s
 
 
 def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPackage]]:
-    """Return packages by what a notebook has in common with them."""
+    """Return packages by the key that they share with a notebook."""
     by_key: dict[tuple, list[IncomingPackage]] = defaultdict(list)
     for each in found:
         by_key[each.key].append(each)
@@ -152,6 +152,6 @@ def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPac
 
 
 def first_of(student: str, found: Sequence[IncomingPackage]) -> IncomingPackage | None:
-    """Return the first that holds a file which may be the student's, else the first, if any."""
+    """Return the first package with a file that may be the student's; else the first, if any."""
     theirs = (p for p in found if not all(why_not_theirs(e, student) for e in p.members))
     return next(theirs, next(iter(found), None))
