@@ -1,7 +1,7 @@
-"""The numbers that course platforms give students: kept for what goes back to them.
+"""The numbers that course platforms give students: kept for the files that go back to them.
 
-gradebook/numbers.json holds {student: {assignment: {'moodle': '8001'}}}. Moodle numbers a student
-anew in each assignment, Canvas once.
+gradebook/numbers.json contains {student: {assignment: {'moodle': '8001'}}}. A student has one
+number in Canvas, but another one for each assignment in Moodle.
 """
 
 import json
@@ -19,10 +19,10 @@ FILE = 'numbers.json'
 
 
 class StudentNumbers:
-    """What is known of the students' numbers; hold the gradebook's lock to change one."""
+    """The students' numbers that are known; hold the gradebook's lock to change one."""
 
     def __init__(self, course: Course) -> None:
-        """Read them. Raises CourseError where the file is damaged."""
+        """Read the file of numbers. Raises CourseError if it is damaged."""
         self._path = course.gradebook / FILE
         self._kept: dict[str, dict[str, dict[str, str]]] = {}
         if self._path.exists():
@@ -39,10 +39,10 @@ class StudentNumbers:
         return self._kept.get(student_id, {}).get(assignment, {})
 
     def take(self, hand_ins: Sequence[MatchedFile]) -> list[str]:
-        """Write the students' numbers down; return for each why it is left to a person, or ''.
+        """Store the students' numbers; return for each submission why it is not taken, or ''.
 
-        That is where students of one name have several numbers: nobody's work may be replaced by
-        that of a namesake.
+        It is not taken if students of the same name have several numbers: a submission must never
+        replace that of another student with the same name.
         """
         came = defaultdict(set)
         for each in hand_ins:
@@ -61,7 +61,7 @@ class StudentNumbers:
         return problems
 
     def _known(self, each: MatchedFile) -> set[str]:
-        """Return the numbers that the student of that name had before."""
+        """Return the numbers that a student of that name had before."""
         if (label := _numbered(each)) is None:
             return set()
         platform, theirs = label.platform, self._kept.get(each.student_id, {})
@@ -71,12 +71,12 @@ class StudentNumbers:
 
 
 def _numbered(each: MatchedFile) -> PlatformLabel | None:
-    """Return what a platform said of the student, if that is a number to be kept."""
+    """Return the submission's platform label if it has a number that is kept; else None."""
     return each.label if each.label and each.label.platform.number_of != 'download' else None
 
 
 def _same(each: MatchedFile) -> tuple[str, ...]:
-    """Return what equal numbers are expected of."""
+    """Return a key; submissions with the same key are expected to have the same number."""
     if (label := _numbered(each)) is None:
         return ()
     of = each.assignment if label.platform.number_of == 'assignment' else ''
@@ -97,7 +97,7 @@ def _problem(each: MatchedFile, numbers: set[str]) -> str:
 
 
 def _checked(kept: Any) -> dict[str, dict[str, dict[str, str]]]:
-    """Return what was read. Raises ValueError where it has another form."""
+    """Return what was read. Raises ValueError if it has another form."""
     fits = isinstance(kept, dict) and all(
         isinstance(numbers, dict) and all(isinstance(n, str) for n in numbers.values())
         for of_student in kept.values()

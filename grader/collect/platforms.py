@@ -1,4 +1,4 @@
-"""Course platforms: what each one writes around the names of students and of their files."""
+"""Course platforms: what each of them adds to the names of students and of their files."""
 
 import re
 import unicodedata
@@ -11,29 +11,29 @@ from grader.common.student_names import UnclearOwner, is_nobody, problem_of_id
 
 @dataclass(frozen=True, kw_only=True)
 class Platform:
-    """A course platform, as its downloads name students."""
+    """A course platform, and how its downloads name students."""
 
     name: str
-    """As gradebook/numbers.json has it: 'moodle'."""
+    """Its key in gradebook/numbers.json: 'moodle'."""
     form: re.Pattern[str]
     """What it writes before the name of a file, or as a folder's name. Its groups are `who`,
     `number`, `rest` (what the student called the file; none in a folder's name), perhaps `time`.
     """
     number_of: Literal['student', 'assignment', 'download']
-    """Whether a student has one number, or another one in each assignment; 'download' is one that
-    only tells equal names in a download apart, and is not kept."""
+    """Whether a student has one number, or one for each assignment; 'download': the number only
+    tells equal names in one download apart, and is not kept."""
     time_format: str = ''
-    """Of the group `time`, the wall clock's when it was handed in."""
+    """The format of the group `time`, the local time when it was handed in."""
     numbers_copies: bool = False
-    """Whether it puts -1, -2, … behind the name of a file that is handed in again."""
+    """Whether it appends -1, -2, … to the name of a file that is handed in again."""
     is_plain: bool = False
-    """Whether one student's upload can be collected by itself: nothing else has such a name."""
+    """Whether an upload can be collected by itself: nothing else has a name of this form."""
     names_files_only: bool = False
-    """Whether it names no folder: one of its form is an upload that somebody unpacked, or a
-    teacher's, whose class is called so."""
+    """Whether it gives no folder a name: a folder with a name of its form is an unpacked upload,
+    or a teacher's folder whose class happens to have such a name."""
 
 
-# The part before `rest` ends as early as it can: what follows it was the student's choice.
+# Each form matches as little as possible before `rest`, which the student chose.
 PLATFORMS = (
     Platform(
         name='moodle',
@@ -52,7 +52,7 @@ PLATFORMS = (
         numbers_copies=True,
         names_files_only=True,
     ),
-    # it has no numbers: what stands before the time tells a_lovelace and b_lovelace apart
+    # Blackboard has no numbers: the text before the time tells a_lovelace and b_lovelace apart
     Platform(
         name='blackboard',
         form=re.compile(
@@ -64,7 +64,7 @@ PLATFORMS = (
     ),
 )
 _ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
-"""What Moodle calls everybody where teachers must not know who it was."""
+"""Names that Moodle gives to all students if the assignment is graded anonymously."""
 
 
 @dataclass(frozen=True)
@@ -75,16 +75,16 @@ class PlatformLabel:
     number: str
     who: str
     rest: str
-    """What the student called the file; '' in a folder's name."""
+    """The student's name for the file; '' in a folder's name."""
     handed_in: datetime | None = None
-    """In UTC; None where it tells no time."""
+    """In UTC; None if the name contains no time."""
 
 
 def label_in(name: str) -> PlatformLabel | None:
-    """Return what a course platform says in a name, if one of them wrote it.
+    """Return what a course platform wrote into a name, or None.
 
-    Where several may have, what a student called a file looks like another one's: the name that
-    stands first was not theirs to choose.
+    If a name has the form of several platforms, the student imitated one in the file's name: the
+    platform whose student name ends first wrote the beginning, which the student can't choose.
     """
     found = [
         (match.end('who'), place, match)
@@ -101,7 +101,7 @@ def label_in(name: str) -> PlatformLabel | None:
 
 
 def student_in(name: str) -> str:
-    """Return the student's name in a name. Raises UnclearOwner."""
+    """Return the student's name that a name contains. Raises UnclearOwner."""
     name = unicodedata.normalize('NFC', name)
     if label := label_in(name):
         name = label.who
@@ -114,9 +114,9 @@ def student_in(name: str) -> str:
 
 
 def _is_class(found: re.Match[str]) -> bool:
-    """Whether a class is called so: ws_2026_2027_a, with a year and the next, or kurs_101_202_a.
+    """Whether it is the name of a class: ws_2026_2027_a, with a year and the next, kurs_101_202_a.
 
-    Names with words for work or a class are nobody's.
+    A name with a word for work or for a class is not a student's.
     """
     number, other = found['number'], found.groupdict().get('upload', '')
     of_years = len(number) == len(other) == 4 and int(other) - int(number) in (0, 1)
@@ -124,7 +124,7 @@ def _is_class(found: re.Match[str]) -> bool:
 
 
 def _time(platform: Platform, found: re.Match[str]) -> datetime | None:
-    """Return when it was handed in; the platform's time zone is taken to be this machine's."""
+    """Return when it was handed in; the platform's time is taken as this machine's local time."""
     if not platform.time_format:
         return None
     try:

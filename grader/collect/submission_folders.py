@@ -1,4 +1,4 @@
-"""Folders of one submission each: written whole, compared, and kept beside earlier ones."""
+"""Folders with one submission each: write them atomically, compare them, keep earlier ones."""
 
 import hashlib
 import os
@@ -17,16 +17,16 @@ from grader.common.errors import TaskFailed
 from grader.notebook.submission import LEFT_OUT, SECRET, TIMESTAMP
 
 MAX_FILES, MAX_BYTES, MAX_DEPTH = 20_000, 2_000_000_000, MAX_PARTS
-"""Far more than is ever collected of one student: somebody has put it there by hand."""
+"""Far more than is ever collected for one student: it was put there by hand."""
 MOST_REMEMBERED = 100_000
-"""Files of earlier submissions whose digests are remembered, in 0.04 GB at most."""
+"""Digests of earlier submissions' files that are cached, in 0.04 GB at most."""
 
 
 def contents(folder: Path, *, read_once: bool = False) -> dict[str, bytes]:
-    """Return the digests of a submission's files, without what the exchange put beside them.
+    """Return the digests of a submission's files, without the exchange's additional files.
 
-    No link is followed. With `read_once`, a file is not read again before Linux has seen it
-    change. Raises TaskFailed where there is more than a submission can have.
+    Links are not followed. With `read_once`, a file is not read again until its status (ctime)
+    changes. Raises TaskFailed if there is more than a submission can have.
     """
     ours = {folder / name for name in (TIMESTAMP, SECRET, LEFT_OUT)}
     files: dict[str, Path] = {}
@@ -35,7 +35,7 @@ def contents(folder: Path, *, read_once: bool = False) -> dict[str, bytes]:
         try:
             status = path.lstat()
         except FileNotFoundError:
-            continue  # it is being replaced: before its result is stored, it is read again
+            continue  # it is being replaced; it is read again before the result is stored
         if stat.S_ISREG(status.st_mode) and path not in ours:
             files[path.relative_to(folder).as_posix()] = path
             size += status.st_size
@@ -59,7 +59,7 @@ def _files_in(folder: Path) -> Iterator[Path]:
 
 
 def digests(files: Mapping[str, Path], *, read_once: bool = False) -> dict[str, bytes]:
-    """Return what tells contents apart: several submissions of 200 MB would fill the memory."""
+    """Return digests to compare files by: several submissions of 200 MB would fill the memory."""
     digest = _digest_read_once if read_once else _digest
     return {name: digest(path) for name, path in files.items()}
 
@@ -81,10 +81,10 @@ def _remembered_digest(path: Path, *_state: int) -> bytes:
 
 
 def contents_of_earlier(shelf: Path) -> list[dict[str, bytes]]:
-    """Return the digests of each submission that is kept there.
+    """Return the digests of each submission that is kept in `shelf`.
 
-    Nobody changes these. To read all of them for each further one kept the whole class waiting:
-    44 s of `./course serve` for one more behind 49 of 19 MB, on a slow disk.
+    Kept submissions do not change, so each file is read only once: `./course serve` took 44 s for
+    a submission after 49 others of 19 MB each, on a slow disk, and the class had to wait.
     """
     return [contents(folder, read_once=True) for folder in shelf.glob('*/submitted')]
 
@@ -96,9 +96,9 @@ def writer(
     secret: Path | None = None,
     left_out: Sequence[str] = (),
 ) -> Callable[[Path], None]:
-    """Return what writes a submission into an empty folder, its time as nbgrader does.
+    """Return a function that writes a submission into an empty folder, the time as nbgrader does.
 
-    `files` have their paths there; `left_out` says what was handed in, too, and is not taken.
+    `files` are keyed by their paths there; `left_out` lists files that were not taken.
     """
 
     def write(folder: Path) -> None:
@@ -119,7 +119,7 @@ def writer(
 
 
 def within(name: str, write: Callable[[Path], None]) -> Callable[[Path], None]:
-    """Return what writes into a folder of that name in the folder it gets."""
+    """Return a function that writes into a new subfolder of that name."""
 
     def write_within(folder: Path) -> None:
         (folder / name).mkdir()
@@ -129,7 +129,7 @@ def within(name: str, write: Callable[[Path], None]) -> Callable[[Path], None]:
 
 
 def put_numbered(write: Callable[[Path], None], shelf: Path) -> Path:
-    """Put a folder beside those of earlier times; return it."""
+    """Put a folder beside the earlier ones, with the next number; return its path."""
     numbers = [int(path.name) for path in shelf.glob('*') if path.name.isdecimal()]
     place = shelf / str(max(numbers, default=0) + 1)
     put_whole(write, place)
@@ -137,7 +137,7 @@ def put_numbered(write: Callable[[Path], None], shelf: Path) -> Path:
 
 
 def put_whole(write: Callable[[Path], None], place: Path) -> None:
-    """Write a folder aside and put it in its place: nobody ever finds half of it."""
+    """Write a folder under another name, then rename it: a reader never finds half of it."""
     place.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix='.new-', dir=place.parents[2]) as aside:
         new = Path(aside, 'new')

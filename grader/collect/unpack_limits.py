@@ -1,4 +1,4 @@
-"""How much is unpacked of an archive, and of the archives in it."""
+"""How much may be unpacked of an archive, and of the archives in it."""
 
 from dataclasses import dataclass
 
@@ -10,21 +10,21 @@ class UnpackLimits:
     files: int
     bytes: int
     tar_bytes: int = -1
-    """Of tars, which are unpacked whole before any file of them is copied; as many as `bytes`."""
+    """For decompressed tars, before their files are copied; by default the same as `bytes`."""
 
     def __post_init__(self) -> None:
-        """Let tars have as many bytes, unless they are told."""
+        """Set the default of `tar_bytes`."""
         if self.tar_bytes < 0:
             self.tar_bytes = self.bytes
 
     def part(self, *, files: int, bytes: int) -> 'UnpackLimits':
-        """Return an allowance of its own for one archive, within this one."""
+        """Return limits for one archive, within these limits."""
         return UnpackLimits(
             min(files, self.files), min(bytes, self.bytes), min(bytes, self.tar_bytes)
         )
 
     def less(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
-        """Take off what was used of a part."""
+        """Subtract what was used of a part."""
         self.files -= part.files - left.files
         self.bytes -= part.bytes - left.bytes
         self.tar_bytes -= part.tar_bytes - left.tar_bytes

@@ -1,4 +1,4 @@
-"""What comes in: each file of a folder or an archive, and of the archives in it."""
+"""Yield the collected files: those of a folder or an archive, and of the archives in it."""
 
 import re
 import shutil
@@ -18,34 +18,34 @@ from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.notebook.submission import SECRET, TIMESTAMP
 
 ALL = {'files': 100_000, 'bytes': 8_000_000_000}
-"""A class of 500 with all its lessons and pictures."""
+"""Limits for all of it: enough for a class of 500 with all its lessons and pictures."""
 MAX_NESTED = 3
-"""Archives within archives: a course management system's, a student's, and one more."""
+"""Archives within archives: a course platform's, a student's, and one more."""
 LIMITS_OF_ALL = Limits(cpu_sec=900, wall_sec=3_600)
 LIMITS_OF_ONE = Limits(cpu_sec=20, wall_sec=300)
-"""What reading them may take: a student's largest one takes two seconds of processor time."""
+"""Limits for reading an archive: a student's largest one takes two seconds of CPU time."""
 
 OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNORECASE)
-"""How names of archives end that can't be read here."""
+"""File name endings of archives that can't be read here."""
 
 
 def look_into(source: Path, aside: Path, packages: Collection[str] = ()) -> Iterator[Incoming]:
     """Yield all files in a folder or an archive; `aside` is an empty folder for copies of them.
 
-    Of `packages`, ROS packages that lessons ask for, all files are read. Links are not followed.
-    An archive in it is taken for a student's. Raises CourseError where there is nothing of the
-    kind.
+    All files of ROS packages are read if they are in `packages`, those that lessons need. Links
+    are not followed. An archive inside counts as a student's. Raises CourseError if `source` is
+    not a folder, a notebook or an archive.
     """
     left = UnpackLimits(**ALL)
     opener = _Opener(frozenset(packages))
-    # the name of one student's upload says whose it is; a class's may look like one of Canvas's
+    # the name of a single upload says whose it is; for Canvas, it may be the name of a class
     name = source.resolve().name
     upload = (name,) if (label := label_in(name)) and label.platform.is_plain else ()
     live = LiveFolder(aside, UnpackLimits(**ALL), opener.is_wanted)
     if source.is_dir():
         found = live.read(source, upload)
     elif source.is_file() and (upload or source.suffix == '.ipynb'):
-        whoever = (source.stat().st_uid,)  # whoever collects it has named it
+        whoever = (source.stat().st_uid,)  # the person who collects it chose this file
         found = live.read_entry(source.resolve().parent, name, trusted=whoever)
     elif source.is_file() and ARCHIVE.search(source.name):
         found = opener.apart(
@@ -62,7 +62,7 @@ def look_into(source: Path, aside: Path, packages: Collection[str] = ()) -> Iter
 def look_into_entry(
     folder: Path, name: str, aside: Path, packages: Collection[str] = ()
 ) -> Iterator[Incoming]:
-    """Yield all files of what lies under one name in a folder, as `look_into` does."""
+    """Yield all files of one entry in a folder, as `look_into` does."""
     opener = _Opener(frozenset(packages))
     found = LiveFolder(aside, UnpackLimits(**ONE), opener.is_wanted).read_entry(folder, name)
     yield from opener.unpacked(found, aside, UnpackLimits(**ONE))
@@ -71,7 +71,7 @@ def look_into_entry(
 def read_apart(
     way: str, outer: dict, name: str, aside: str, left: dict, packages: list[str]
 ) -> dict:
-    """Do in a process of its own what `apart` asks for: JSON comes, and JSON goes."""
+    """Read an archive in a separate process, called by `apart`; arguments and result are JSON."""
     allowance, archive = UnpackLimits(**left), from_json(outer)
     opener = _Opener(frozenset(packages))
     if way == 'inside':
@@ -94,7 +94,7 @@ def wanted(parts: tuple[str, ...], packages: Collection[str] = ()) -> bool:
 
 
 def package_in(folder: str) -> str:
-    """Return the name of the package that a folder or an archive may hold."""
+    """Return the name of the package that a folder or an archive may contain."""
     label = label_in(folder)
     name = ARCHIVE.sub('', (label and label.rest) or folder)
     return re.sub(r'(-\d+| \(\d+\))$', '', name)
@@ -102,7 +102,7 @@ def package_in(folder: str) -> str:
 
 @dataclass(frozen=True)
 class _Opener:
-    """Opens archives, and archives in them."""
+    """Opens archives, and the archives in them."""
 
     packages: frozenset[str]
 
@@ -113,7 +113,7 @@ class _Opener:
     def unpacked(
         self, found: Iterator[Incoming], aside: Path, left: UnpackLimits
     ) -> Iterator[Incoming]:
-        """Yield files; of each archive among them, what is in it."""
+        """Yield files; for an archive, the files in it."""
         for each in found:
             if each.problem or each.litter or not ARCHIVE.search(each.parts[-1]):
                 yield from self.opened(each, aside, left, nested=1)
@@ -128,7 +128,7 @@ class _Opener:
     def apart(
         self, way: str, outer: Incoming, name: str, aside: Path, left: UnpackLimits, limits: Limits
     ) -> Iterator[Incoming]:
-        """Yield what is in an archive, 'inside' alone or 'opened' with the archives in it."""
+        """Read an archive in a separate process: 'inside' it alone, 'opened' with nested ones."""
         own = tempfile.mkdtemp(dir=aside)
         arguments = (way, as_json(outer), name, own, asdict(left), sorted(self.packages))
         try:
@@ -148,7 +148,7 @@ class _Opener:
     def opened(
         self, each: Incoming, aside: Path, left: UnpackLimits, *, nested: int
     ) -> Iterator[Incoming]:
-        """Yield a file; of an archive, what is in it."""
+        """Yield a file; for an archive, the files in it."""
         if each.problem or each.litter:
             yield each
         elif OTHER_ARCHIVE.search(each.parts[-1]) and not ARCHIVE.search(each.parts[-1]):
@@ -167,7 +167,7 @@ class _Opener:
     def inside(
         self, outer: Incoming, name: str, aside: Path, left: UnpackLimits
     ) -> Iterator[Incoming]:
-        """Yield what is in one archive."""
+        """Yield the files in one archive; archives in it are not opened."""
         members = unpack(
             outer.readable,
             name=name,

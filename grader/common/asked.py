@@ -1,20 +1,20 @@
-"""Words that a command line may hold and that mean something further down."""
+"""Values of command line arguments that other packages interpret."""
 
 from datetime import datetime, time
 
 RECORDED = 'recorded'
-"""Stands for the seed that a submission's stored result came from."""
+"""Instead of a seed: the seed of a submission's stored result."""
 PLATFORMS = ('canvas', 'moodle')
 """Course platforms that import scores: `grader/passback/write.py` has a table for each."""
 END_OF_DAY = time(23, 59)
-"""What a date without a time stands for."""
+"""The time that a date without a time gets."""
 
 
 def local_time(text: str) -> datetime:
-    """Read '2026-11-30', '2026-11-30 18:00' or a time with its zone; ours is taken without one.
+    """Read '2026-11-30', '2026-11-30 18:00' or a time with a zone; the default is the local zone.
 
-    In the night in which clocks are changed, a time may mean two moments: the later one is taken.
-    Raises ValueError on anything else.
+    A local time can occur twice in the night when clocks are set back: then it is the later one.
+    Raises ValueError for any other text.
     """
     found = datetime.fromisoformat(text)
     if len(text) <= len('2026-11-30'):

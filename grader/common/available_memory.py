@@ -1,4 +1,4 @@
-"""How much memory may still be used, here and in the container that we may be in."""
+"""How much memory is available, on the machine and in the container around the grader."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import psutil
 
 
 def available_bytes(cgroup: Path = Path('/sys/fs/cgroup')) -> int:
-    """Return what the machine has left, or the container's limit if that is less."""
+    """Return what the machine has available, or what the container has, if that is less."""
     left = psutil.virtual_memory().available
     try:
         most = int((cgroup / 'memory.max').read_text('ascii'))

@@ -1,6 +1,6 @@
-"""Where this grader lies."""
+"""The path of this checkout."""
 
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-"""The checkout that this grader belongs to."""
+"""The root folder of the checkout that this grader is part of."""

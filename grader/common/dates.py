@@ -1,4 +1,4 @@
-"""Read a time as nbgrader writes it, and in no other form: strangers wrote the text."""
+"""Read times only in the form that nbgrader writes: the text may come from students."""
 
 import re
 import time
@@ -7,7 +7,7 @@ from pathlib import Path
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 MAX_BYTES = 200
-"""Of a file that holds a time."""
+"""How much of a file with a time is read."""
 _FORM = re.compile(
     r'(?P<day>\d{4}-\d\d-\d\d)([ T](?P<clock>\d\d:\d\d(:\d\d)?)(\.(?P<fraction>\d{1,9}))?)?'
     r' ?((?P<offset>[+-]\d\d:?\d\d)|(?P<zone>[A-Za-z][A-Za-z0-9_/]{0,40}))?',
@@ -15,12 +15,12 @@ _FORM = re.compile(
 )
 _HOURS = {'WEST': 1, 'BST': 1, 'CEST': 2, 'EEST': 3, 'JST': 9, 'AEST': 10, 'AEDT': 11, 'NZDT': 13}
 _HOURS |= {'EDT': -4, 'CDT': -5, 'CST': -6, 'MDT': -6, 'PDT': -7, 'PST': -8}
-"""Names that clocks show and the time zone database does not have, with their hours from UTC; one
-that this machine's clock shows, as CST in China, means what it means there."""
+"""Abbreviations of zones that the time zone database lacks, with their hours from UTC. If this
+machine's own zone uses one, such as CST in China, it has the meaning that it has there."""
 
 
 def date_in(text: str) -> datetime | None:
-    """Return the time in UTC, without a zone taken for UTC; None where there is no such time."""
+    """Return the time in UTC, which is also the default zone; None if it is not a valid time."""
     found = _FORM.fullmatch(text.strip())
     if found is None:
         return None
@@ -35,7 +35,7 @@ def date_in(text: str) -> datetime | None:
 
 
 def date_of(path: Path) -> datetime | None:
-    """Read a file that holds a time; None where there is none, or no file that can be read."""
+    """Return the time in a file; None if it has none, or if the file can't be read."""
     try:
         if not path.is_file() or path.is_symlink():
             return None
@@ -46,7 +46,7 @@ def date_of(path: Path) -> datetime | None:
 
 
 def utc_of(seconds: float) -> datetime | None:
-    """Return a time in seconds since 1970 in UTC; None where a calendar has no such day."""
+    """Convert Unix time to UTC; None if it is out of range."""
     try:
         return datetime.fromtimestamp(seconds, UTC)
     except (ValueError, OverflowError, OSError):
@@ -54,7 +54,7 @@ def utc_of(seconds: float) -> datetime | None:
 
 
 def _zone(offset: str, name: str) -> tzinfo:
-    """Raises ValueError, ZoneInfoNotFoundError or OSError where there is no such zone."""
+    """Return a zone. Raises ValueError, ZoneInfoNotFoundError or OSError if it is unknown."""
     if offset:
         minutes = int(offset[1:3]) * 60 + int(offset[-2:])
         return timezone(timedelta(minutes=-minutes if offset[0] == '-' else minutes))

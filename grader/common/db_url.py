@@ -1,9 +1,9 @@
-"""Where nbgrader's database is, if not in a file: gradebook/database.toml.
+"""Read where nbgrader's database is, if not in a file, from gradebook/database.toml.
 
     db_url = "postgresql://grader@db.example.org/course"
 
-nbgrader_config.py gives nbgrader the same db_url. The password is in ~/.pgpass, or in this file,
-which nobody else may read then.
+nbgrader_config.py gives nbgrader the same db_url. The password is in ~/.pgpass, or in this
+file, which other users must not be able to read then.
 """
 
 import re
@@ -17,19 +17,19 @@ FILE = 'database.toml'
 SCHEMES = ('postgresql', 'postgres', 'postgresql+psycopg')
 WAIT = {
     'connect_timeout': '10',  # seconds
-    'keepalives_idle': '30',  # seconds until a server that says nothing is asked
+    'keepalives_idle': '30',  # seconds without data until the server is probed
     'keepalives_interval': '10',
     'keepalives_count': '3',
     'tcp_user_timeout': '60000',  # milliseconds
     'options': '-clock_timeout=60000',  # milliseconds, as SQLite's timeout
 }
-"""How long libpq waits. Written into the address as it is: nbgrader allows no `%` in it."""
+"""How long libpq waits. Values must not need URL encoding: nbgrader allows no `%` in the URL."""
 
 
 def configured_db_url(gradebook: Path) -> str | None:
-    """Return the address that gradebook/database.toml gives, or None where there is no such file.
+    """Return the URL in gradebook/database.toml; None if there is no such file.
 
-    Raises CourseError with what is wrong in it.
+    Raises CourseError if something in it is wrong.
     """
     path = gradebook / FILE
     try:
@@ -40,7 +40,7 @@ def configured_db_url(gradebook: Path) -> str | None:
         raise CourseError(f'{path} can not be read: {type(error).__name__}') from None
     try:
         table = tomllib.loads(text)
-    except ValueError:  # it quotes what may be the password
+    except ValueError:  # its message may quote the password
         table = {}
     url = table.get('db_url')
     if table.keys() != {'db_url'} or not isinstance(url, str) or not _is_postgresql(url):
@@ -60,9 +60,9 @@ def configured_db_url(gradebook: Path) -> str | None:
 
 
 def refuse_another_place(config: Path) -> None:
-    """Raise CourseError where nbgrader_config.py has an address of its own.
+    """Raise CourseError if nbgrader_config.py sets a db_url itself.
 
-    `./course` runs no configuration of nbgrader's, and would use another database.
+    `./course` does not read nbgrader's configuration, and would use another database.
     """
     try:
         text = config.read_text(encoding='utf-8')
@@ -76,12 +76,12 @@ def refuse_another_place(config: Path) -> None:
 
 
 def is_in_postgresql(db_url: str) -> bool:
-    """Whether a database is in PostgreSQL, and not a file of SQLite's."""
+    """Whether a database is in PostgreSQL, and not in a file of SQLite."""
     return db_url.startswith('postgresql')
 
 
 def gradebook_of(db_url: str, root: Path) -> Path:
-    """Return the gradebook that a database belongs to: SQLite's lies in it."""
+    """Return the gradebook of a database: the folder of SQLite's file, or else the default."""
     if is_in_postgresql(db_url):
         return root / 'gradebook'
     return Path(db_url.removeprefix('sqlite:///').split('?')[0]).parent
@@ -90,7 +90,7 @@ def gradebook_of(db_url: str, root: Path) -> Path:
 def _is_postgresql(url: str) -> bool:
     try:
         parts = urlsplit(url)
-        _ = parts.port  # raises ValueError where it is none
+        _ = parts.port  # raises ValueError if it is not a valid port
     except ValueError:
         return False
     return parts.scheme in SCHEMES and len(parts.path) > 1 and '://' in url

@@ -4,7 +4,7 @@ import asyncio
 
 
 async def readable(file: int) -> None:
-    """Wait until there is something to read, or no more to come."""
+    """Wait until there is something to read, or the other end was closed."""
     loop, ready = asyncio.get_running_loop(), asyncio.Event()
     loop.add_reader(file, ready.set)
     try:

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all, whatever happens while they are written."""
+"""Write files atomically: completely or not at all, whatever happens meanwhile."""
 
 import contextlib
 import os
@@ -7,9 +7,9 @@ from pathlib import Path
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
-    """Write a file so that nobody ever finds half of it, not even after a power cut.
+    """Write a file so that a reader never finds half of it, not even after a power cut.
 
-    Raises OSError, and leaves what was there before, when it can't be written.
+    Raises OSError, and keeps the previous file, if it can't be written.
     """
     raw = content.encode() if isinstance(content, str) else content
     aside = path.with_name(f'.{path.name}.new')
@@ -20,13 +20,13 @@ def write_whole(path: Path, content: str | bytes) -> None:
             os.fsync(file.fileno())
         os.replace(aside, path)
     except OSError:
-        with contextlib.suppress(OSError):  # its name may be too long to begin with
+        with contextlib.suppress(OSError):  # if the name is too long, the file was not created
             aside.unlink()
         raise
 
 
 def make_folder_for(time: datetime, parent: Path) -> Path:
-    """Make a folder named by a time; with a number after it if there is one already."""
+    """Make a folder named after a time, with a number appended if it exists already."""
     parent.mkdir(parents=True, exist_ok=True)
     name, number = time.strftime('%Y-%m-%d_%H-%M-%S'), 1
     while True:

@@ -1,4 +1,4 @@
-"""Futures of concurrent.futures: one that follows from another, and many that end in order."""
+"""Futures of concurrent.futures: chain one to another, run many and yield them in order."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -11,14 +11,14 @@ Result = TypeVar('Result')
 
 
 def completed(value: Value) -> 'Future[Value]':
-    """Return a future that has its value already."""
+    """Return a future that already has its value."""
     future: Future[Value] = Future()
     future.set_result(value)
     return future
 
 
 def then(work: 'Future[Value]', function: Callable[[Value], Result]) -> 'Future[Result]':
-    """Return the future of `function(value)`, which is called once `work` has its value."""
+    """Return the future of `function(value)`, called when `work` has its value."""
     after: Future[Result] = Future()
 
     def settle(done: 'Future[Value]') -> None:
@@ -34,9 +34,9 @@ def then(work: 'Future[Value]', function: Callable[[Value], Result]) -> 'Future[
 def run_ahead(
     items: Iterable[Item], start: Callable[[Item], 'Future[Result]'], *, at_most: int
 ) -> Iterator[tuple[Item, 'Future[Result]']]:
-    """Start work on items, so many ahead of the first that is not done; yield them in their order.
+    """Start work on items, at most `at_most` not yet yielded; yield items in their order.
 
-    What `start` raises, the item's future raises.
+    If `start` raises, the item's future raises the same.
     """
     under_way: deque[tuple[Item, Future[Result]]] = deque()
     for item in items:

@@ -1,8 +1,8 @@
-"""Leave out of an import what nobody here uses: servers, and what they are made of.
+"""Avoid imports that are not used here: servers, and the libraries that they need.
 
 `import nbgrader` imports four extensions of Jupyter's server, and with them nbconvert, tornado's
-handlers and a client of HTTP: a third of a second of processor time. A command that only reads
-the gradebook uses none of it.
+handlers and an HTTP client: a third of a second of CPU time. A command that only reads the
+gradebook uses none of them.
 """
 
 import gc
@@ -14,24 +14,24 @@ from types import ModuleType
 from typing import Any
 
 UNUSED = ('nbgrader', 'nbgrader.utils', 'requests')
-"""What nbgrader's database imports, and asks for nothing: `utils` brings setuptools."""
+"""Imported by nbgrader's database, but not used by it: `utils` imports setuptools."""
 FORMATS = ('isoduration', 'rfc3986_validator', 'rfc3987', 'rfc3987_syntax')
-"""What jsonschema checks durations and addresses with, where it has it and a schema names them:
-ours do not, nor do nbformat's."""
+"""jsonschema imports these to check durations and addresses, but only if a schema names such
+formats: ours do not, nor do nbformat's."""
 
 
 class _Unmade(ModuleType):
-    """A module whose code has not run: the first of its names that is asked for runs it.
+    """A module whose code runs when one of its names is used first.
 
-    Where importlib's LazyLoader is used, the next import of it, or of a module in it, does.
+    With importlib's LazyLoader, the next import of it, or of a module in it, would run the code.
     """
 
     def __getattr__(self, name: str) -> Any:
         in_it = '__path__' in vars(self) and importlib.util.find_spec(f'{self.__name__}.{name}')
         if in_it or name == '__path__':
-            raise AttributeError(name)  # Python imports a module then
+            raise AttributeError(name)  # makes Python import the submodule
         spec = self.__spec__
-        assert spec  # as it was found
+        assert spec  # set by leave_out_servers
         assert spec.loader
         self.__class__ = ModuleType  # type: ignore[assignment]
         spec.loader.exec_module(self)
@@ -40,7 +40,7 @@ class _Unmade(ModuleType):
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """Keep Python from looking for garbage in what is imported meanwhile, and from then on."""
+    """Turn off garbage collection during imports; afterwards, it ignores what was imported."""
     gc.disable()
     try:
         yield
@@ -50,7 +50,7 @@ def uncollected() -> Iterator[None]:
 
 
 def leave_out_servers() -> None:
-    """Put off what is UNUSED, as far as this process has not imported it."""
+    """Delay the import of the UNUSED modules, unless this process has imported them."""
     for name in UNUSED:
         spec = None if name in sys.modules else importlib.util.find_spec(name)
         if spec is None:

@@ -1,4 +1,4 @@
-"""What is logged, in lines that move no cursor: file names and messages may be a student's."""
+"""Log without control characters: file names and messages may come from a student."""
 
 import logging
 import re
@@ -9,13 +9,13 @@ _PASSWORD = re.compile(r'(\bpostgres\S*?://[^\s/:@]*:)\S*@')
 
 
 class VisibleFilter(logging.Filter):
-    """Spell out escapes, controls and marks of direction; the lines of a traceback stay.
+    """Escape control characters and marks of text direction, except the line ends of a traceback.
 
-    The password in the address of a database is taken out.
+    The password in a database's URL is removed.
     """
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Change a record; it is logged in any case."""
+        """Change a record; it is always logged."""
         record.msg, record.args = _told(record.getMessage()), None
         if record.exc_info:
             record.exc_text = _told(logging.Formatter().formatException(record.exc_info))
@@ -23,7 +23,7 @@ class VisibleFilter(logging.Filter):
 
 
 def _told(text: str) -> str:
-    """Return a text to log: nbgrader's `db upgrade` logs an address with its password."""
+    """Return a text to log: nbgrader's `db upgrade` logs the URL with its password."""
     return visible(_PASSWORD.sub(r'\1***@', text))
 
 
@@ -31,16 +31,16 @@ NBGRADER_LOGGING = {
     'filters': {'visible': {'()': 'grader.common.logs.VisibleFilter'}},
     'handlers': {'console': {'filters': ['visible']}},
 }
-"""nbgrader's setting `logging_config` for the same in its own commands."""
+"""The value of nbgrader's setting `logging_config`, for the same filter in its commands."""
 
 
 def log_visibly() -> None:
-    """Log to stderr, unless something else was set up."""
+    """Log to stderr through the filter, unless logging was configured before."""
     handler = logging.StreamHandler()
     handler.addFilter(VisibleFilter())
     logging.basicConfig(handlers=[handler])
 
 
 def tell(line: str) -> None:
-    """Print a line at once, into a pipe too: anyone who waits has to know what for."""
+    """Print a line at once, into a pipe too: it says what the program waits for."""
     print(line, flush=True)

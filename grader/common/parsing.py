@@ -1,8 +1,8 @@
-"""Let a process of its own read what strangers wrote: no text of theirs can stop a run.
+"""Read what students wrote in a separate process, so that such text can never stop a run.
 
-`python -m grader.common.parsing_process` is started once, or as often as threads ask at the same
-time. It is asked over a pipe, and forks a process for each question, with limits on processor
-time, wall time and memory. Both ways go JSON.
+`python -m grader.common.parsing_process` is started for each thread that needs it at the same
+time, and reused. It gets requests over a pipe, and forks a process for each one, with limits on
+CPU time, wall time and memory. Requests and answers are JSON.
 """
 
 import atexit
@@ -22,43 +22,42 @@ from grader.common.errors import CourseError
 COMMAND = (sys.executable, '-P', '-m', 'grader.common.parsing_process')
 MAX_ANSWER_BYTES = 100_000_000
 AT_ONCE = min(4, len(os.sched_getaffinity(0)))
-"""How many questions are answered at a time: the process that asks can prepare no more."""
+"""How many requests run at a time: the calling process can't prepare more."""
 END_GRACE_SEC = 60
-"""How long a process that its limits should have ended may take to be gone: machines are busy."""
+"""How much later than its wall time limit a process is killed: the machine may be busy."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What reading one text may take."""
+    """Limits for reading one text."""
 
     cpu_sec: int = 20
     wall_sec: int = 300
-    """A machine may be busy: only what waits for nothing reaches it."""
+    """Long, as a machine may be busy: only a process that hangs reaches it."""
     memory_bytes: int = 2**30
-    """Of addresses, what the process begins with included: about 0.3 GB."""
+    """Address space, including the 0.3 GB that the process has at its start."""
 
 
 class ParsingFailed(Exception):
-    """Says in a few words why a text was not read to its end."""
+    """Why a text could not be read completely, in a few words."""
 
 
 def parse(function: str, *arguments: object, limits: Limits | None = None) -> Any:
-    """Call `module:function` on JSON in a process with limits; return its answer.
+    """Call `module:function` with JSON arguments in a process with limits; return its result.
 
-    Threads are answered side by side, AT_ONCE at a time. Raises ParsingFailed where it does not
-    come to an answer, OSError where that is the disk's fault, and CourseError where there is no
-    such process.
+    Calls of several threads run at the same time, AT_ONCE at most. Raises ParsingFailed if it
+    gives no result, OSError if the disk is the cause, and CourseError if the process can't run.
     """
     return _SERVERS.ask(function, arguments, limits or Limits())
 
 
 def call_off() -> None:
-    """End whatever is asked just now: whoever waits for it gets CourseError."""
+    """End all requests that are running: their callers get a CourseError."""
     _SERVERS.call_off()
 
 
 class _Server:
-    """A process that is asked by one thread at a time."""
+    """One such process, used by one thread at a time."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen | None = None
@@ -69,7 +68,7 @@ class _Server:
         try:
             answer = self._answer(question, limits)
         except BaseException:
-            self.end()  # what it still has to say belongs to nobody
+            self.end()  # or a late answer would be read as that of the next request
             raise
         match answer:
             case {'answer': found}:
@@ -79,14 +78,14 @@ class _Server:
         raise ParsingFailed(answer['why'])
 
     def kill(self) -> None:
-        """End it with whatever it has forked, while another thread starts it or waits for it."""
+        """Kill it and what it has forked, while another thread starts it or waits for it."""
         self.is_called_off = True
         if process := self._process:
-            with contextlib.suppress(ProcessLookupError):  # that thread has ended it itself
+            with contextlib.suppress(ProcessLookupError):  # the other thread has ended it
                 os.killpg(process.pid, signal.SIGKILL)
 
     def end(self) -> None:
-        """End it with whatever it has forked."""
+        """Kill it and what it has forked."""
         if self._process:
             os.killpg(self._process.pid, signal.SIGKILL)
             self._process.communicate()
@@ -96,8 +95,8 @@ class _Server:
         if self._process is None:
             self._process = subprocess.Popen(
                 COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
-            )  # the process that asks handles Ctrl-C
-        if self.is_called_off:  # before there was a process to end
+            )  # start_new_session: the calling process handles Ctrl-C
+        if self.is_called_off:  # kill() was called before the process was started
             raise CourseError('nobody waits for the answer any more: run this again')
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -119,7 +118,7 @@ class _Server:
 
 
 class _Servers:
-    """All of them: as many as threads ask at once, and others after a fork."""
+    """All such processes: one for each thread that needs one; a forked process starts its own."""
 
     def __init__(self) -> None:
         self._free = threading.Semaphore(AT_ONCE)

@@ -1,4 +1,4 @@
-"""The process that `grader.common.parsing` asks: it forks one with limits for each question."""
+"""The process that `grader.common.parsing` starts: it forks a limited one for each request."""
 
 import importlib
 import json
@@ -15,7 +15,7 @@ from grader.common.parsing import MAX_ANSWER_BYTES, Limits
 
 
 def serve(questions: BinaryIO, answers: BinaryIO) -> None:
-    """Answer one question a line, until nobody asks any more."""
+    """Answer one request per line, until the pipe is closed."""
     for line in questions:
         function, arguments, limits = json.loads(line)
         answers.write(_forked(_function(function), arguments, Limits(**limits)) + b'\n')
@@ -24,7 +24,7 @@ def serve(questions: BinaryIO, answers: BinaryIO) -> None:
 
 @cache
 def _function(name: str) -> Callable[..., object]:
-    """Import what is asked for; a `get_ready` beside it makes what each answer needs, once."""
+    """Import the function; call its module's `get_ready`, if any, once for all requests."""
     module, _, function = name.partition(':')
     found = importlib.import_module(module)
     getattr(found, 'get_ready', lambda: None)()
@@ -32,7 +32,7 @@ def _function(name: str) -> Callable[..., object]:
 
 
 def _forked(call: Callable[..., object], arguments: list, limits: Limits) -> bytes:
-    """Return what a process of its own comes to, as JSON."""
+    """Call the function in a forked process; return its answer as JSON."""
     ours, theirs = os.pipe()
     process = os.fork()
     if not process:
@@ -46,7 +46,7 @@ def _forked(call: Callable[..., object], arguments: list, limits: Limits) -> byt
             os.kill(process, signal.SIGKILL)
     _, status = os.waitpid(process, 0)
     number = os.waitstatus_to_exitcode(status)
-    if is_too_long:  # it may have ended before the signal came
+    if is_too_long:  # it may have exited before the signal arrived
         number = -signal.SIGKILL
     return answer if number == 0 else _packed({'why': _why(-number, limits)})
 
@@ -56,7 +56,7 @@ def _answer_and_exit(
 ) -> None:
     status = 1
     try:
-        # each of them ends the process when it is reached
+        # each of these limits ends the process when it is reached
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_CPU, (limits.cpu_sec, limits.cpu_sec + 1))
         resource.setrlimit(resource.RLIMIT_AS, (limits.memory_bytes, limits.memory_bytes))
@@ -81,12 +81,12 @@ def _come_to(call: Callable[..., object], arguments: list) -> bytes:
         return _packed({'why': 'it takes too much memory'})
     except RecursionError:
         return _packed({'why': 'it is nested too deep'})
-    except Exception as error:  # whatever their text makes a library raise
+    except Exception as error:  # whatever a library raises for a student's text
         return _packed({'why': f'{type(error).__name__}: {error}'[:500]})
 
 
 def _why(number: int, limits: Limits) -> str:
-    """Put into words by which signal a process was ended."""
+    """Describe the signal that ended a process."""
     return {
         signal.SIGXCPU: f'it takes over {limits.cpu_sec} s of processor time',
         signal.SIGALRM: f'it takes over {limits.wall_sec} s',
@@ -101,5 +101,5 @@ def _packed(answer: dict) -> bytes:
 
 if __name__ == '__main__':
     with open(os.dup(1), 'wb') as own_pipe:
-        os.dup2(2, 1)  # what a library prints is no answer
+        os.dup2(2, 1)  # what a library prints must not be read as an answer
         serve(sys.stdin.buffer, own_pipe)

@@ -1,4 +1,4 @@
-"""Many submissions at a time: coroutines on one event loop, in a thread of its own."""
+"""Run coroutines of many submissions at a time, on an event loop in a separate thread."""
 
 import asyncio
 import signal
@@ -13,13 +13,13 @@ Result = TypeVar('Result')
 
 
 class Pool:
-    """Runs what is submitted, at most `in_flight` at a time; leaving the `with` cancels the rest.
+    """Runs what is submitted, at most `in_flight` at a time; the end of `with` cancels the rest.
 
-    May be used inside a running event loop: the loop here is another one, in another thread.
+    May be used inside a running event loop, because its own loop runs in another thread.
     """
 
     def __init__(self, in_flight: int) -> None:
-        """Let so many run at a time."""
+        """Take how many may run at a time."""
         self._gate = asyncio.Semaphore(in_flight)
         self._ready = threading.Event()
         self._thread = threading.Thread(target=self._serve, name='pool', daemon=True)
@@ -39,7 +39,7 @@ class Pool:
     def submit(
         self, work: Callable[..., Awaitable[Result]], *args: Any, **kwargs: Any
     ) -> 'Future[Result]':
-        """Await `work(...)` as soon as there is room; the future brings what came of it."""
+        """Await `work(...)` when there is room; the future gets its result."""
         return asyncio.run_coroutine_threadsafe(self._in_turn(work, args, kwargs), self._loop)
 
     async def _in_turn(
@@ -49,7 +49,7 @@ class Pool:
             return await work(*args, **kwargs)
 
     def _serve(self) -> None:
-        asyncio.run(self._until_left())  # cancels at its end whatever is not done
+        asyncio.run(self._until_left())  # at its end, it cancels unfinished tasks
 
     async def _until_left(self) -> None:
         self._loop, self._left = asyncio.get_running_loop(), asyncio.Event()
@@ -59,9 +59,9 @@ class Pool:
 
 @contextmanager
 def _answering_interrupts() -> Iterator[None]:
-    """Answer another Ctrl-C with a word: it takes seconds, and else leaves kernels behind."""
+    """Print a message on another Ctrl-C: an interrupt would leave kernels behind."""
     if threading.current_thread() is not threading.main_thread():
-        yield  # Python tells the main thread alone
+        yield  # Python handles signals only in the main thread
         return
 
     def answer(*_: object) -> None:

@@ -1,4 +1,4 @@
-"""Names of students, as they stand in names of files and folders."""
+"""Names of students, as they appear in names of files and folders."""
 
 import re
 import unicodedata
@@ -8,11 +8,11 @@ from itertools import permutations
 from my_robot_basics.validate.text import visible
 
 MAX_ID_CHARACTERS, MAX_ID_BYTES = 128, 200
-"""What nbgrader's database keeps of a name, and what a folder's name may be long, with a rest."""
+"""How long a name may be in nbgrader's database, and in a folder's name with a suffix."""
 HTML = frozenset('<>"')
-"""The formgrader's tables show names as they are, in text and in attributes."""
+"""Characters that the formgrader's tables would show unescaped, in text and in attributes."""
 MOST_WORDS = 4
-"""The words of a name are tried in each order where they are written as one; more are not."""
+"""For a name of at most so many words, all orders of the words written as one are compared."""
 
 _UPLOADS = """
     notebooks submitted submissions submission inbound assignment assignments homework hw task
@@ -29,17 +29,17 @@ _BESIDE_THEM = frozenset(
 
 
 class UnclearOwner(Exception):
-    """Says in a sentence why a file is nobody's."""
+    """Why a file can't be assigned to a student, in a sentence."""
 
 
 def same_person(one: str, other: str) -> bool:
-    """Whether two names may be one: case, accents, the words' order and what parts them apart."""
+    """Whether two names may be the same, ignoring case, accents, word order and separators."""
     return not spellings(one).isdisjoint(spellings(other))
 
 
 @lru_cache(maxsize=10_000)
 def spellings(name: str) -> frozenset[str]:
-    """Return what two names that may be one have in common: their words, in any order."""
+    """Return keys to compare names by; two names that may be the same share one."""
     plain = unicodedata.normalize('NFKD', name).casefold()
     words = re.findall(r'[^\W_]+', ''.join(c for c in plain if not unicodedata.combining(c)))
     if not words:
@@ -49,13 +49,13 @@ def spellings(name: str) -> frozenset[str]:
 
 
 def is_nobody(name: str) -> bool:
-    """Whether a folder or an archive is named after work or a term, and after no student."""
+    """Whether a folder or an archive is named after work or a term, not after a student."""
     words = set(re.findall(r'[^\W\d_]+', unicodedata.normalize('NFC', name).lower()))
     return bool(words & _WORDS_OF_NOBODY) and words <= _WORDS_OF_NOBODY | _BESIDE_THEM
 
 
 def problem_of_id(student_id: str) -> str:
-    """Say why a text can't be the name of a student's folder, if it can't."""
+    """Return why a text can't be the name of a student's folder, or ''."""
     if not student_id or student_id.startswith('.'):
         return 'there is no name of a student in it'
     if visible(student_id) != student_id or any(mark in student_id for mark in '/\n\t'):

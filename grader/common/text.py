@@ -1,4 +1,4 @@
-"""Make text that students wrote safe to print, to tabulate and to open in a spreadsheet."""
+"""Make text of students safe to print, to show in tables and to open in a spreadsheet."""
 
 import csv
 import io
@@ -12,11 +12,11 @@ from my_robot_basics.validate.text import visible as visible
 
 BYTE_ORDER_MARK = '\ufeff'
 _SURROGATE = re.compile('[\ud800-\udfff]')
-"""Stands for a byte of a name that is no UTF-8, and can be written nowhere."""
+"""Python's placeholder for a byte of a name that is not UTF-8; it can't be encoded."""
 
 
 def storable(text: str) -> str:
-    """Return text that a database takes: of a name that is no UTF-8, the strange bytes spelled."""
+    """Return text that a database can store: bytes of a name that are not UTF-8 are escaped."""
     return _SURROGATE.sub(_spelled_byte, text)
 
 
@@ -26,23 +26,23 @@ def _spelled_byte(found: re.Match) -> str:
 
 
 def pad(text: str, width: int) -> str:
-    """Fill a line up with spaces to `width` columns."""
+    """Append spaces to a text until it is `width` columns wide."""
     return text + ' ' * (width - columns(text))
 
 
-# ';' and tabs separate fields, too, where a comma is part of numbers; quotes begin a field
+# in some locales ';' or tabs separate fields, because numbers have a comma; quotes begin a field
 _FORMULA = re.compile(r'(^|[,;|])(["\s]*)(?=[=+\-@＝＋－＠])')
 _NUMBER = re.compile(r'["\s]*[-+]?\d+(\.\d+)?(e[-+]?\d+)?["\s]*([,;|)\]}]|$)')
 
 
 def spreadsheet_safe(text: object) -> str:
-    """Return a CSV field that no spreadsheet takes for a formula, wherever it splits a line."""
+    """Return a CSV field that no spreadsheet reads as a formula, wherever it splits the line."""
     line = printable(text)
-    if line == '-':  # what platforms write for nothing
+    if line == '-':  # platforms write this for an empty value
         return line
 
     def quoted(found: re.Match) -> str:
-        if found[1] and _NUMBER.match(line, found.end(1)):  # behind a comma, it is no formula
+        if found[1] and _NUMBER.match(line, found.end(1)):  # a number after a separator
             return found[0]
         return f"{found[0]}'"
 
@@ -50,9 +50,9 @@ def spreadsheet_safe(text: object) -> str:
 
 
 def spreadsheet_table(rows: Iterable[Sequence[object]]) -> str:
-    """Return rows as CSV for a spreadsheet; numbers stay, and all other fields become safe.
+    """Return rows as CSV for a spreadsheet; numbers stay, and all other fields are made safe.
 
-    It begins with a byte-order mark: without one, Excel takes it for another encoding than UTF-8.
+    It begins with a byte-order mark: without it, Excel does not read it as UTF-8.
     """
     text = io.StringIO(newline='')
     table = csv.writer(text)

@@ -1,4 +1,4 @@
-"""What does the grading: the versions in use, and a hash of the code."""
+"""What a result depends on: the versions in use, and a hash of the code."""
 
 import hashlib
 import os
@@ -12,13 +12,13 @@ from pathlib import Path
 import my_robot_basics
 
 REPORTED = ('ros-jazzy-rclpy', 'nbgrader', 'ipykernel', 'numpy', 'my_robot_basics')
-"""What is named to people; the hash holds everything that is installed."""
+"""Packages that a report names; the hash includes everything that is installed."""
 METADATA = ('.dist-info', '.egg-info')
-"""How the name of what tells of an installed distribution ends."""
+"""How names of folders end that describe an installed distribution."""
 
 
 def versions() -> dict[str, str]:
-    """Return what a report says of Python, the system and the packages that matter most."""
+    """Return the versions of Python, the system and the most important packages, for a report."""
     return {
         'Python': platform.python_version(),
         'system': f'{platform.system()} {platform.release()}',
@@ -41,16 +41,16 @@ def machinery() -> str:
 
 
 def _installed(folder: str) -> Iterator[str]:
-    """Yield name and version of each distribution, as its metadata's place is called.
+    """Yield the folder name of each distribution's metadata, which has its name and version.
 
-    importlib reads and parses all of it.
+    importlib.metadata would read and parse all of the metadata.
     """
     with os.scandir(folder) as entries:
         yield from (each.name for each in entries if each.name.endswith(METADATA))
 
 
 def _code(folder: str) -> Iterator[str]:
-    """Yield the paths of all files in it but of what Python makes of them, always in one order."""
+    """Yield the paths of all files in it except `__pycache__`, always in the same order."""
     with os.scandir(folder) as entries:
         for each in sorted(entries, key=lambda entry: entry.name):
             if each.is_file():

@@ -1,4 +1,4 @@
-"""Read lessons: a run reads each a dozen times, and few of them are new since the last run."""
+"""Read lessons fast: a run reads each a dozen times, and few have changed since the last run."""
 
 import contextlib
 import hashlib
@@ -15,17 +15,17 @@ from grader.common.files import write_whole
 from grader.common.text import printable
 
 KEPT = 'valid_lessons.json'
-"""In the gradebook: of which texts it is known that they are notebooks. To check one takes longer
-than to read it ten times. What is removed there is made again."""
+"""A file in the gradebook with hashes of lessons that are valid notebooks. To validate one takes
+ten times as long as to read it. If the file is removed, it is made again."""
 MOST_KEPT = 200
 MOST_SAID = 100
-"""Characters of what is wrong: it may begin with all of a cell."""
+"""How much of an error message is kept: it may quote a whole cell."""
 
 
 def read_lesson(text: str, gradebook: Path) -> NotebookNode:
-    """Return the notebook that a text holds. Raises ValueError, which says why, where it is none.
+    """Return the notebook in a text. Raises ValueError with the reason if it is not a notebook.
 
-    What was valid once is not checked again; the gradebook's folder remembers it, where it is.
+    A text that was valid before is not validated again; the gradebook's folder stores its hash.
     """
     return pickle.loads(_packed(text, gradebook))
 
@@ -61,11 +61,11 @@ def _known(path: Path) -> list[str]:
     try:
         known = json.loads(path.read_text(encoding='utf-8'))
     except (OSError, ValueError):
-        return []  # none yet, or damaged
+        return []  # not there yet, or damaged
     return [each for each in known if isinstance(each, str)] if isinstance(known, list) else []
 
 
 def _remember(digests: list[str], gradebook: Path) -> None:
-    # without a gradebook, or without a place in it, the next run takes longer
+    # if the gradebook does not exist or is full, the next run validates again
     with contextlib.suppress(OSError):
         write_whole(gradebook / KEPT, json.dumps(digests[-MOST_KEPT:]))

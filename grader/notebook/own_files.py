@@ -6,9 +6,9 @@ from nbformat import NotebookNode
 
 
 def parsed(text: str) -> NotebookNode:
-    """Return a notebook from its file's text. Raises ValueError for another text.
+    """Return a notebook from its file's text. Raises ValueError if it is not one.
 
-    nbformat.read would check all of its format each time, and only log what it finds.
+    nbformat.read would validate all of it each time, and only log what is wrong.
     """
     try:
         notebook = nbformat.reader.reads(text)

@@ -1,6 +1,6 @@
-"""Read a submitted notebook down to the cells that grading needs: runs in a process with limits.
+"""Read a submitted notebook, keeping the cells that grading needs; runs with limits.
 
-`reading` asks for it, and checks what comes back. Nothing here needs more than JSON.
+`reading` calls it in a separate process, and checks the result. It uses plain JSON, not nbformat.
 """
 
 import json
@@ -14,21 +14,21 @@ from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from grader.common.errors import UnreadableSubmission
 
 MAX_NOTEBOOK_BYTES = 20_000_000
-"""More than any lesson with all its pictures; a larger file is refused, not read."""
+"""More than any lesson with all its pictures; a larger file is refused unread."""
 LANGUAGES = '[A-Za-z_]{2,20}'
-"""What names of languages are made of: zh_CN."""
+"""A pattern for names of languages, such as zh_CN."""
 MAX_CELLS = 800
 MAX_CHARACTERS = 500_000
-"""Of all cells together, pictures apart. Both are twenty times what a lesson has: what is read is
-restored, checked and written several times in the process that holds the gradebook."""
+"""For all cells together, without pictures. Both limits are twenty times what a lesson has: the
+notebook is restored, checked and written several times in the process of the gradebook."""
 MAX_GRADE_ID_CHARACTERS = 128
-"""A longer one is no lesson's, and is dropped."""
+"""A longer one is not from a lesson, and is dropped."""
 MAX_PICTURES, MAX_PICTURE_NAME_CHARACTERS = 200, 255
-"""Pasted ones, of all cells together; each is checked anew whenever the notebook is written."""
+"""Pasted pictures of all cells: each is checked whenever the notebook is written."""
 
 
 def read(path: str) -> dict:
-    """Read a notebook; return its cells and language, or what is wrong with it, as JSON."""
+    """Read a notebook; return its cells and language, or its problem, as JSON."""
     try:
         raw = _read_json(Path(path))
         return {'cells': _cells(Path(path), raw)} | _language(raw)
@@ -37,7 +37,7 @@ def read(path: str) -> dict:
 
 
 def _language(raw: object) -> dict[str, str]:
-    """Return what the notebook says that its language is, in which its feedback is written."""
+    """Return the language that the notebook's metadata names: its feedback is in this language."""
     said = raw
     for name in ('metadata', KEY, LANGUAGE):
         said = said.get(name) if isinstance(said, dict) else None
@@ -104,7 +104,7 @@ def _read_json(path: Path) -> object:
 
 
 def _clean_cell(cell: dict) -> dict:
-    """Keep type, source, id, grade id and pasted pictures; drop outputs and all other metadata."""
+    """Keep type, source, id, grade id and pasted pictures; drop outputs and other metadata."""
     source = _text(cell.get('source', cell.get('input', '')))
     cell_id = cell.get('id')
     metadata = {}
@@ -152,7 +152,7 @@ def _dicts(value: object) -> list[dict]:
 def _text(value: object) -> str:
     if isinstance(value, list):
         value = ''.join(part for part in value if isinstance(part, str))
-    # a lone surrogate can't be written to any file or socket
+    # a lone surrogate can't be encoded for a file or a socket
     return value.encode(errors='replace').decode() if isinstance(value, str) else ''
 
 

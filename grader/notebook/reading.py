@@ -1,4 +1,4 @@
-"""Read a notebook that nobody vouches for, in a process with limits; check what that says."""
+"""Read a notebook of unknown origin in a process with limits; check the result."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from grader.notebook.raw_notebook import (
 )
 
 _EMPTY = {'nbformat': 4, 'nbformat_minor': 5, 'metadata': {}, 'cells': []}
-"""A notebook; nbformat's own functions check it, cell by cell, against all of their schema."""
+"""An empty notebook; with nbformat's functions, each cell would be checked against all of it."""
 
 _CELL = {
     'type': 'object',
@@ -69,13 +69,13 @@ _READ = jsonschema.Draft202012Validator(
         'additionalProperties': False,
     }
 )
-"""What the process that reads a notebook may say of it."""
+"""What the process that reads a notebook may return."""
 
 
 def read_notebook(path: Path) -> NotebookNode:
-    """Read a notebook that nobody vouches for, keeping only what grading needs.
+    """Read a notebook of unknown origin, keeping only what grading needs.
 
-    It is read in a process with limits; what that says is checked. Raises UnreadableSubmission
+    It is read in a process with limits, and the result is checked. Raises UnreadableSubmission
     with a sentence for the student.
     """
     try:

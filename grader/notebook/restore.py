@@ -1,4 +1,4 @@
-"""Put a submitted notebook back into the shape of its source: only answers are the student's."""
+"""Rebuild a submitted notebook from its source: only the answers are taken from the student."""
 
 from collections import defaultdict
 from collections.abc import Iterator
@@ -15,17 +15,17 @@ NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
 
 @dataclass(frozen=True)
 class AssignmentTemplate:
-    """What every submission of an assignment is restored from."""
+    """What all submissions of an assignment are restored from."""
 
     notebook: NotebookNode
-    """The instructor's cells, hidden tests included, with the released stubs for answers."""
+    """The instructor's cells with hidden tests, but with the released stubs as answers."""
     released: dict[str, str]
-    """The text that students were given, by grade id."""
+    """The source of each cell that students were given, by grade id."""
 
 
 @dataclass(frozen=True)
 class RestoredNotebook:
-    """A notebook with every cell of its source, in the source's order, and what was restored."""
+    """A notebook with every cell of its source, in the source's order, and notes on changes."""
 
     notebook: NotebookNode
     notes: tuple[str, ...]
@@ -33,7 +33,7 @@ class RestoredNotebook:
 
 @dataclass
 class _Found:
-    """What a submission holds for one cell of the source."""
+    """What a submission has for one cell of the source."""
 
     parts: list[NotebookNode] = field(default_factory=list)
     after: list[NotebookNode] = field(default_factory=list)
@@ -41,7 +41,7 @@ class _Found:
 
 
 def make_template(source: NotebookNode, release: NotebookNode) -> AssignmentTemplate:
-    """Join the instructor's notebook with the one that students were given."""
+    """Combine the instructor's notebook with the one that students were given."""
     released = {name: cell.source for cell in release.cells if (name := grade_id(cell))}
     notebook = nbformat.from_dict(source)
     for cell, kind in zip(notebook.cells, roles(notebook), strict=True):
@@ -54,12 +54,11 @@ def make_template(source: NotebookNode, release: NotebookNode) -> AssignmentTemp
 
 
 def restore(submitted: NotebookNode, template: AssignmentTemplate) -> RestoredNotebook:
-    """Build the notebook that is graded: the template's cells and the student's answers.
+    """Build the notebook that is graded: the template's cells with the student's answers.
 
-    Locked and grade cells come from the template, whatever became of them. An answer that was
-    split or repeated keeps all its parts. A cell of the student's own stays after the cell that
-    it followed.
-    Every change to a locked, grade or answer cell is noted.
+    Locked and grade cells come from the template, even if the student changed them. If an answer
+    was split or repeated, all its parts are kept. A cell that the student added stays after the
+    cell that it followed. Every change to a locked, grade or answer cell is noted.
     """
     notes: list[str] = []
     found = _match(submitted, template.notebook)
@@ -75,12 +74,12 @@ def restore(submitted: NotebookNode, template: AssignmentTemplate) -> RestoredNo
     restored.metadata = nbformat.from_dict(template.notebook.metadata)
     restored.metadata[KEY] = {'notes': notes, 'title': title_of(template.notebook)}
     if (language := language_of(submitted.metadata)) != ENGLISH:
-        restored.metadata[KEY][LANGUAGE] = language  # of the feedback; grading does not know it
+        restored.metadata[KEY][LANGUAGE] = language  # for feedback; grading ignores it
     return RestoredNotebook(notebook=restored, notes=tuple(notes))
 
 
 def _match(submitted: NotebookNode, template: NotebookNode) -> dict[int, _Found]:
-    """Find each submitted cell's place in the template, by grade id, else by text or cell id."""
+    """Find each submitted cell's index in the template, by grade id, else by text or cell id."""
     by_grade_id = {grade_id(c): i for i, c in enumerate(template.cells) if grade_id(c)}
     plain = [(i, c) for i, c in enumerate(template.cells) if not grade_id(c)]
     by_id = {c.id: i for i, c in plain if 'id' in c}
@@ -103,7 +102,7 @@ def _match(submitted: NotebookNode, template: NotebookNode) -> dict[int, _Found]
 def _restore(
     cell: NotebookNode, parts: list[NotebookNode], released: dict[str, str], notes: list[str]
 ) -> Iterator[NotebookNode]:
-    """Yield what stands for one cell of the template."""
+    """Yield the restored cells for one cell of the template."""
     kind, name = role(cell), grade_id(cell)
     original = nbformat.from_dict(cell)
     changed = bool(parts) and parts[0].source not in (cell.source, released.get(name or ''))
@@ -121,13 +120,13 @@ def _restore(
         elif changed or parts[0].cell_type != cell.cell_type:
             notes.append(f'the cell `{name}` was changed: the original counts')
     elif kind == 'setup' and changed:
-        yield _from_student(parts[0])  # it may define what an answer needs
+        yield _from_student(parts[0])  # an answer may need what it defines
 
 
 def _answer(cell: NotebookNode, parts: list[NotebookNode], notes: list[str]) -> None:
     """Put the student's text into an answer cell."""
     name = grade_id(cell)
-    # the released text beside an answer is a copy that was left over: it would undo the answer
+    # beside an answer, an unchanged copy of the stub was left over: it would overwrite the answer
     written = [part for part in parts if part.source.strip() not in ('', cell.source.strip())]
     parts = written or parts[:1]
     if not parts:
@@ -144,7 +143,7 @@ def _answer(cell: NotebookNode, parts: list[NotebookNode], notes: list[str]) -> 
 
 
 def _from_student(cell: NotebookNode) -> NotebookNode:
-    """Copy a cell of the student's own; nothing that they wrote into its metadata lives on."""
+    """Copy a cell that the student added, without any metadata of the student's."""
     own = nbformat.from_dict(cell)
     own.metadata = nbformat.from_dict({KEY: {'role': 'text'}})
     if own.cell_type == 'code':

@@ -1,4 +1,4 @@
-"""Read what a student handed in; refuse what cannot be read, by name and reason."""
+"""Read what a student handed in; refuse what can't be read, with the reason."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,17 +15,17 @@ from grader.common.student_names import MAX_ID_BYTES, MAX_ID_CHARACTERS, problem
 from grader.notebook.reading import read_notebook
 
 MAX_PYTHON_FILES, MAX_PYTHON_BYTES = 50, 2_000_000
-"""Of the student's own modules together: twenty times what the whole course has."""
+"""Limits for the student's own modules together: twenty times what the whole course has."""
 _MOST_NOTES, _MOST_COLUMNS = 10, 60
-"""Of files that are left out: so many are named, each by the beginning of its name."""
+"""How many files that are left out are named, and how much of each name."""
 TIMESTAMP = 'timestamp.txt'
-"""Beside a notebook: when it was handed in, as nbgrader writes it."""
+"""A file beside a notebook: when it was handed in, as nbgrader writes it."""
 SECRET = 'submission_secret.txt'
-"""Beside a notebook from nbgrader's exchange: what the name of its page of feedback is made of."""
+"""A file from nbgrader's exchange: the feedback page's name is derived from it."""
 MAX_SECRET_BYTES = 1_000
-"""nbgrader's have 128 characters."""
+"""nbgrader's secrets have 128 characters."""
 LEFT_OUT = 'left_out.txt'
-"""Beside a notebook: what was handed in with it and not collected, each in a line with why."""
+"""A file beside a notebook: what was not collected, one per line, with the reason."""
 _MOST_LEFT_OUT_BYTES = 10_000
 
 
@@ -36,10 +36,10 @@ class Submission:
     student_id: str
     assignment: str
     path: Path
-    """Where the notebook is, or was expected."""
+    """Where the notebook is, or should be."""
     notebook: NotebookNode | None
-    """Cell types, sources, grade ids and its language only; None when it could not be read, or was
-    not yet."""
+    """With cell types, sources, grade ids and its language only; None if it could not be read, or
+    has not been read yet."""
     extra_files: tuple[Path, ...] = ()
     """The student's own Python files beside the notebook."""
     package_files: Mapping[str, Path] = field(default_factory=dict)
@@ -47,20 +47,20 @@ class Submission:
     problem: str | None = None
     """Why the notebook could not be read."""
     notes: tuple[str, ...] = ()
-    """What of it is not taken, and why."""
+    """What was left out, and why."""
 
     @property
     def files(self) -> dict[str, Path]:
-        """All of it but the notebook and its time, by path."""
+        """All files except the notebook and timestamp.txt, by path."""
         return {path.name: path for path in self.extra_files} | dict(self.package_files)
 
 
 def read_submission(
     folder: Path, *, student_id: str, assignment: str, packages: Sequence[str] = ()
 ) -> Submission:
-    """Read `folder`/`assignment`.ipynb; what is wrong with it ends up in `problem`.
+    """Read `folder`/`assignment`.ipynb; an error becomes its `problem`.
 
-    `packages` are the ROS packages that the lesson asks for, folders beside the notebook.
+    `packages` are the ROS packages that the lesson needs, folders beside the notebook.
     """
     return with_notebook(
         unread_submission(folder, student_id=student_id, assignment=assignment, packages=packages)
@@ -70,7 +70,7 @@ def read_submission(
 def unread_submission(
     folder: Path, *, student_id: str, assignment: str, packages: Sequence[str] = ()
 ) -> Submission:
-    """Return a submission's files; its notebook has still to be read."""
+    """Return a submission with its files; its notebook is not read yet."""
     taken, notes = _python_files(folder)
     of_packages: dict[str, Path] = {}
     for name in packages:
@@ -91,7 +91,7 @@ def unread_submission(
 
 
 def with_notebook(unread: Submission) -> Submission:
-    """Return a submission whose notebook is read; what is wrong with it ends up in `problem`."""
+    """Read the notebook of a submission and return the result; an error becomes its `problem`."""
     try:
         return replace(unread, notebook=read_notebook(unread.path))
     except UnreadableSubmission as error:
@@ -99,7 +99,7 @@ def with_notebook(unread: Submission) -> Submission:
 
 
 def _package_in(folder: Path, name: str) -> tuple[dict[str, Path], list[str]]:
-    """Return the files of a package, by path, and a note for each one that is not taken."""
+    """Return the files of a package, by path, and notes on those that are left out."""
     place = folder / name
     if place.is_symlink():
         return {}, [f'the package `{name}` was left out: it is a link']
@@ -117,7 +117,7 @@ def _package_in(folder: Path, name: str) -> tuple[dict[str, Path], list[str]]:
 
 
 def _left_out_before(folder: Path) -> Iterator[str]:
-    """Yield what `./course collect` did not take."""
+    """Yield what `./course collect` left out."""
     path = folder / LEFT_OUT
     if path.is_symlink() or not path.is_file():
         return
@@ -128,9 +128,9 @@ def _left_out_before(folder: Path) -> Iterator[str]:
 
 
 def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
-    """Return the plain .py files that lie directly in `folder`, sorted, and a note for each other.
+    """Return the plain .py files in `folder` itself, sorted, and notes on those that are left out.
 
-    Of many, or large ones, those come that fit within MAX_PYTHON_FILES and MAX_PYTHON_BYTES.
+    They are taken in order while they fit within MAX_PYTHON_FILES and MAX_PYTHON_BYTES.
     """
     taken: list[Path] = []
     notes: list[str] = []
@@ -139,7 +139,7 @@ def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
         name, size = shorten(printable(path.name), _MOST_COLUMNS), path.lstat().st_size
         if path.is_symlink():
             notes.append(f'the file `{name}` was left out: it is a link')
-        elif problem_of_id(path.name):  # what is said there is said of names of students
+        elif problem_of_id(path.name):  # the rules for students' names apply to file names, too
             notes.append(
                 f'the file `{name}` was left out: its name begins with a dot, is longer than '
                 f'{MAX_ID_CHARACTERS} characters or {MAX_ID_BYTES} bytes, or has '
@@ -160,13 +160,13 @@ def _python_files(folder: Path) -> tuple[list[Path], list[str]]:
 
 
 def timestamps(submission: Submission) -> list[Path]:
-    """Return nbgrader's timestamp.txt, if it lies beside the notebook."""
+    """Return nbgrader's timestamp.txt, if it is beside the notebook."""
     path = submission.path.with_name(TIMESTAMP)
     return [path] if path.is_file() and not path.is_symlink() else []
 
 
 def from_exchange(submission: Submission) -> list[Path]:
-    """Return what nbgrader's exchange put beside the notebook: the time, and the secret."""
+    """Return the files of nbgrader's exchange beside the notebook: the time, and the secret."""
     secret = submission.path.with_name(SECRET)
     fits = secret.is_file() and not secret.is_symlink()
     fits = fits and secret.stat().st_size <= MAX_SECRET_BYTES
@@ -174,7 +174,7 @@ def from_exchange(submission: Submission) -> list[Path]:
 
 
 def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
-    """Read when it was handed in (UTC, without a zone) and what is wrong with that file."""
+    """Return when it was handed in (UTC, without a time zone), and notes on a damaged file."""
     if not (found := timestamps(submission)):
         return None, []
     if when := date_of(found[0]):

@@ -1,4 +1,4 @@
-"""Charts as plain SVG: they need nothing else, run nothing, and say in words what they show."""
+"""Charts as plain SVG, self-contained, without scripts, and with a description in words."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -7,13 +7,13 @@ from markupsafe import Markup
 
 MOST_BARS = 12
 _BAR, _HEIGHT, _TOP, _BOTTOM = 56, 120, 22, 40
-"""Pixels: a bar's width, the tallest one's height, and the room above and below for text."""
+"""Pixels: a bar's width, the tallest bar's height, and the space above and below for text."""
 
 
 def distribution(
     scores: Sequence[float], max_score: float, *, title: str, put: Callable[..., str] = str.format
 ) -> Markup:
-    """Return a histogram of scores, from 0 to `max_score` points; `put` fills in a template."""
+    """Return a histogram of scores, from 0 to `max_score` points; `put` translates text."""
     bars = histogram(scores, max_score)
     tallest = max(count for _, count in bars) or 1
     width, height = _BAR * len(bars), _TOP + _HEIGHT + _BOTTOM
@@ -50,7 +50,7 @@ def distribution(
 
 
 def histogram(scores: Sequence[float], max_score: float) -> list[tuple[str, int]]:
-    """Return label and count of each bar; a bar holds its lower border, the last one both."""
+    """Return label and count of each bar; a bar includes its lower limit, the last one both."""
     step = max(1, -(-int(max_score) // MOST_BARS))
     last = int(max_score) // step
     counts = Counter(min(last, int(max(0.0, score) // step)) for score in scores)
@@ -63,7 +63,7 @@ def _label(bar: int, step: int, max_score: float) -> str:
 
 
 def share(part: float, *, label: str) -> Markup:
-    """Return a bar that is filled to `part`, 0 to 1."""
+    """Return a bar that is filled to `part`, from 0 to 1."""
     return Markup(
         '<svg role="img" viewBox="0 0 100 12" width="100" height="12" aria-label="{label}">'
         '<rect width="100" height="12" class="track"/>'

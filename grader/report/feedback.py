@@ -1,4 +1,4 @@
-"""What a student reads: each check's reason and picture, what to try next, never a hidden test."""
+"""Feedback for students: each check's reason and picture, what to try, never a hidden test."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -24,13 +24,13 @@ from grader.storage.records import graded_notebook
 
 ABOUT = ('student', 'assignment', 'score', 'max_score', 'late_penalty')
 LIMITS = Limits(cpu_sec=10)
-"""An ordinary page takes a tenth of a second of processor time."""
+"""An ordinary page takes a tenth of a second of CPU time."""
 FEEDBACK_PASSES = ('grader.report.gather_verdicts.GatherVerdicts',)
-"""What nbgrader does with a graded notebook before it shows it."""
+"""Preprocessors that nbgrader applies to a graded notebook before it is shown."""
 
 
 class FeedbackPage(Exporter):
-    """Our page in the place of nbgrader's own, for `nbgrader generate_feedback` too."""
+    """Replaces nbgrader's own feedback page, also in `nbgrader generate_feedback`."""
 
     file_extension = '.html'
     output_mimetype = 'text/html'
@@ -38,19 +38,19 @@ class FeedbackPage(Exporter):
     def from_notebook_node(  # type: ignore[override]  # other exporters return text, too
         self, nb: NotebookNode, resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
-        """Return the page of a graded notebook as HTML."""
+        """Return the feedback page of a graded notebook as HTML."""
         nb, resources = self.gathered(nb, resources, **options)
         return _page(nb, resources['nbgrader']), resources
 
     def gathered(
         self, nb: NotebookNode, resources: dict | None = None, **options: object
     ) -> tuple[NotebookNode, dict]:
-        """Return what a page shows, and of whom."""
+        """Return the notebook with verdicts, and the resources that a page is made from."""
         return super().from_notebook_node(nb, resources, **options)
 
 
 def _page(notebook: NotebookNode, about: dict) -> str:
-    """Return the page, made in a process with limits. Raises ParsingFailed where that can't be."""
+    """Return the page, made in a process with limits. Raises ParsingFailed if that fails."""
     about = {key: about[key] for key in ABOUT if key in about}
     try:
         return parse('grader.report.page:page', notebook, about, limits=LIMITS)
@@ -64,7 +64,7 @@ def write_feedback(
 ) -> list[Path]:
     """Write a page for each graded submission under gradebook/feedback/; return their paths.
 
-    `say` gets a line for each page that is new or says something else than before.
+    `say` gets a line for each page that is new or has changed.
     """
     exporter = page_exporter()
     recover(course)
@@ -79,7 +79,7 @@ def write_feedback(
             student, assignment, _ = each
             return threads.submit(_page, *_gathered(course, student, assignment, exporter))
 
-        # its process makes one page while this one asks the database for the next
+        # other processes make pages while this one reads the next submissions from the database
         for (student, assignment, _), work in run_ahead(whose, start, at_most=2 * AT_ONCE):
             try:
                 place, is_new = _put(course, student, assignment, work.result())
@@ -97,7 +97,7 @@ def write_feedback(
 
 @contextmanager
 def _threads() -> Iterator[ThreadPoolExecutor]:
-    """Give threads that wait for pages; what they wait for ends where the block is left early."""
+    """Provide threads that wait for pages; if the block raises, running requests are ended."""
     threads = ThreadPoolExecutor(AT_ONCE)
     try:
         yield threads
@@ -110,7 +110,7 @@ def _threads() -> Iterator[ThreadPoolExecutor]:
 
 
 def page_exporter() -> FeedbackPage:
-    """Return what makes pages: one is enough for any number of them."""
+    """Return an exporter of pages: one is enough for any number of pages."""
     exporter = FeedbackPage(config=Config({'Exporter': {'default_preprocessors': []}}))
     for name in FEEDBACK_PASSES:
         exporter.register_preprocessor(name)
@@ -120,10 +120,10 @@ def page_exporter() -> FeedbackPage:
 def write_page(
     course: Course, student: str, assignment: str, exporter: FeedbackPage
 ) -> tuple[Path, bool]:
-    """Write the page of a graded submission; return its path, and whether it is a new one.
+    """Write the page of a graded submission; return its path, and whether it has changed.
 
-    What `nbgrader release_feedback` wants to know lies beside it then. Raises ParsingFailed where
-    no page can be made.
+    The files that `nbgrader release_feedback` needs are put beside it. Raises ParsingFailed if
+    the page can't be made.
     """
     return _put(
         course, student, assignment, _page(*_gathered(course, student, assignment, exporter))
@@ -139,7 +139,7 @@ def _gathered(
 
 
 def _put(course: Course, student: str, assignment: str, html: str) -> tuple[Path, bool]:
-    """Put a page in its place, unless it is there; return that, and whether it was not."""
+    """Write a page unless it is the same already; return its path, and whether it was written."""
     graded = course.folder('autograded', student, assignment)
     folder = course.folder('feedback', student, assignment)
     folder.mkdir(parents=True, exist_ok=True)

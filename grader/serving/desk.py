@@ -1,4 +1,4 @@
-"""The steps of the resident process: give turns, have graded, store and release."""
+"""The steps of the resident process: start gradings in turn, store results, release feedback."""
 
 import time
 from collections.abc import Callable
@@ -33,24 +33,24 @@ from grader.storage.failures import in_sentences
 from grader.storage.submitted import SubmissionFolder
 
 BUDGET_SEC = 0.5
-"""How long replaced submissions are kept before others have their turn; one may take longer."""
+"""How long replaced submissions are stored before gradings go on; one may take longer."""
 _LATER = 'a later one was graded in its place; it is in submitted_before/'
 
 
 @dataclass
 class Desk:
-    """All that the resident process works with."""
+    """The state of the resident process."""
 
     course: Course
     queue: Queue
     grading: Grading
     inbound: Path
     feedback: Path | None
-    """The exchange's folder for pages, if there is one."""
+    """The exchange's folder for feedback pages, if there is one."""
     say: Callable[[str], None]
     seen: dict[str, str] = field(default_factory=dict)
     last_taken: dict[str, float] = field(default_factory=dict)
-    """When something of each owner in the inbound folder was taken in, in seconds since 1970."""
+    """When an entry of each owner was last taken in from the inbound folder, in Unix time."""
     rounds: Rounds = field(default_factory=Rounds)
     running: dict['Future[GradedSubmission]', Arrival] = field(default_factory=dict)
     prepared: dict[str, tuple[object, PreparedAssignment]] = field(default_factory=dict)
@@ -58,9 +58,9 @@ class Desk:
 
 
 def begin_turns(desk: Desk) -> bool:
-    """Start to grade whose turn it is, as many as there is room for; return whether any was.
+    """Start as many gradings as there is room for; return whether there was any turn.
 
-    It gives so many turns, too: not each one leads to something that is graded.
+    A turn counts even if it does not lead to a grading.
     """
     started = False
     rules = (deadlines(desk.course.gradebook) or Deadlines()).resubmissions
@@ -78,9 +78,9 @@ def begin_turns(desk: Desk) -> bool:
 
 
 def begin(desk: Desk, arrival: Arrival, earlier: list[Arrival]) -> None:
-    """Put a submission in its place and have it graded; those that it replaces are kept later."""
+    """Put a submission in its place and have it graded; the ones it replaces are kept later."""
     outcome, reason = _put(desk, arrival)
-    if outcome == REFUSED:  # then an earlier one has its turn
+    if outcome == REFUSED:  # then an earlier submission gets its turn
         _end(desk, replace(arrival, state=REFUSED, reason=reason, started=0.0))
         return
     desk.queue.update(*(replace(each, state=KEEPING) for each in earlier))
@@ -97,7 +97,7 @@ def begin(desk: Desk, arrival: Arrival, earlier: list[Arrival]) -> None:
 
 
 def keep_replaced(desk: Desk) -> bool:
-    """Keep some of what a later submission has replaced; return whether there was any."""
+    """Store some of the submissions that a later one replaced; return whether there was any."""
     found = desk.queue.find(KEEPING)
     end = time.monotonic() + BUDGET_SEC
     for each in found:
@@ -110,7 +110,7 @@ def keep_replaced(desk: Desk) -> bool:
 
 
 def finish_done(desk: Desk) -> bool:
-    """Store what is graded, write and release its feedback; return whether there was any."""
+    """Store finished gradings, write and release feedback; return whether there was any."""
     done = [work for work in desk.running if work.done()]
     for work in done:
         finish(desk, desk.running.pop(work), work)
@@ -118,7 +118,7 @@ def finish_done(desk: Desk) -> bool:
 
 
 def finish(desk: Desk, arrival: Arrival, work: 'Future[GradedSubmission]') -> None:
-    """Store one result; its page is released before it counts as done."""
+    """Store one result; its feedback page is released before it counts as graded."""
     folder = desk.course.folder('submitted', arrival.student_id, arrival.assignment)
     found = SubmissionFolder(arrival.student_id, arrival.assignment, folder)
     outcome = desk.grading.store(found, work)
@@ -141,7 +141,7 @@ def finish(desk: Desk, arrival: Arrival, work: 'Future[GradedSubmission]') -> No
 
 
 def _release(desk: Desk, arrival: Arrival) -> str:
-    """Write a page, and put it into the exchange; return why there is none, if that is so."""
+    """Write a feedback page, and put it into the exchange; return why that failed, or ''."""
     try:
         with in_sentences(desk.course):
             page, _ = write_page(desk.course, *arrival.whose, desk.exporter)
@@ -157,7 +157,7 @@ def _release(desk: Desk, arrival: Arrival) -> str:
 
 
 def _put(desk: Desk, arrival: Arrival) -> tuple[str, str]:
-    """Put an arrival where it is graded; return what it was, REFUSED where that can't be done."""
+    """Put a submission where it is graded; return the outcome (REFUSED on errors) and why."""
     try:
         return put_in_place(desk.course, arrival)
     except Exception as error:
@@ -167,7 +167,7 @@ def _put(desk: Desk, arrival: Arrival) -> tuple[str, str]:
 
 
 def _end(desk: Desk, ended: Arrival) -> None:
-    """Note that an arrival is not graded, and say why."""
+    """Record that a submission is not graded, and print why."""
     desk.queue.update(ended)
     discard(desk.course, [ended])
     what = 'not taken, look at it' if ended.state == REFUSED else 'replaced'
@@ -177,14 +177,14 @@ def _end(desk: Desk, ended: Arrival) -> None:
 def _start(desk: Desk, found: SubmissionFolder) -> 'Future[GradedSubmission]':
     try:
         return desk.grading.start(found, _prepared(desk, found.assignment))
-    except Exception as error:  # its result says so, and the next one is not concerned
+    except Exception as error:  # becomes the result of this submission; others are not affected
         failed: Future[GradedSubmission] = Future()
         failed.set_exception(error)
         return failed
 
 
 def _prepared(desk: Desk, assignment: str) -> PreparedAssignment:
-    """Return what an assignment is graded by; once more where its lesson or the rules changed."""
+    """Return the prepared assignment; prepare it again if the lesson or the rules changed."""
     course = desk.course
     paths = (course.source_path(assignment), course.release_path(assignment))
     now = [each.stat().st_mtime_ns for each in (*paths, course.gradebook / FILE) if each.exists()]
@@ -196,5 +196,5 @@ def _prepared(desk: Desk, assignment: str) -> PreparedAssignment:
 
 
 def shown(arrival: Arrival) -> str:
-    """Return what a line says of a submission."""
+    """Return how messages name a submission."""
     return printable(f'{arrival.assignment} of {arrival.student_id}')

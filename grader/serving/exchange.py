@@ -1,4 +1,4 @@
-"""Release pages of feedback where nbgrader's `fetch_feedback` and Assignment List look."""
+"""Release feedback pages where nbgrader's `fetch_feedback` and Assignment List look for them."""
 
 import os
 from pathlib import Path
@@ -6,18 +6,18 @@ from pathlib import Path
 from nbgrader.utils import notebook_hash
 
 FOLDER_MODE, PAGE_MODE = 0o711, 0o644
-"""Nobody can list the folder, and a page has a name that only its student knows."""
+"""Other users can't list the folder; a page's name is known only to its student."""
 
 
 def feedback_folder(inbound: Path) -> Path | None:
-    """Return where the exchange keeps feedback, if `inbound` is an exchange's inbound folder."""
+    """Return the exchange's feedback folder, if `inbound` is an exchange's inbound folder."""
     inbound = inbound.resolve()
     is_exchange = inbound.name == 'inbound' and (inbound.parent / 'outbound').is_dir()
     return inbound.parent / 'feedback' if is_exchange else None
 
 
 def release_page(page: Path, folder: Path, *, secret: str, notebook: str) -> Path:
-    """Put a page of feedback into the exchange, whole or not at all; return its place."""
+    """Put a feedback page into the exchange atomically; return its path."""
     if not folder.is_dir():
         folder.mkdir()
         folder.chmod(FOLDER_MODE)

@@ -1,4 +1,4 @@
-"""Say no more of what was refused and is gone from the inbound folder: somebody saw to it."""
+"""Stop listing refused entries that were removed from the inbound folder by a person."""
 
 import os
 import time
@@ -8,23 +8,23 @@ from grader.serving.desk import Desk
 from grader.serving.inbound import key_of
 
 SETTLED_NS = 5_000_000_000
-"""A folder that has changed so lately may change again without another time: some file systems
-count in seconds."""
+"""A folder that changed less than this ago may change again with the same time: some file
+systems store times in whole seconds."""
 
 
 class Gone:
-    """Looks for such entries whenever something was put into the folder, or taken away."""
+    """Looks for removed entries whenever the inbound folder has changed."""
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
         self._changed_ns = -1
 
     def forget(self) -> bool:
-        """Take them out of the queue; return whether there were any.
+        """Remove them from the queue; return whether there were any.
 
-        Should one come back, it is looked into again: a network's file system may show nothing for
-        a moment. One of which some was taken in is not, unless it has changed: what it holds would
-        be handed in twice. Raises OSError where the folder is gone.
+        If one comes back, it is read again: a network file system may show nothing for a moment.
+        But an entry from which submissions were taken is not, unless it has changed: they would be
+        handed in twice. Raises OSError if the folder is gone.
         """
         desk = self._desk
         changed_ns = os.stat(desk.inbound).st_mtime_ns

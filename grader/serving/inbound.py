@@ -1,4 +1,4 @@
-"""Look at a folder into which others put files: what is new there, and is written to its end."""
+"""Find new entries in a folder into which others put files, when they are complete."""
 
 import contextlib
 import hashlib
@@ -18,47 +18,47 @@ from grader.serving.rounds import Rounds
 from grader.serving.trouble import noted
 
 QUIET_SEC = 1.0
-"""What nobody has changed for so long is taken to be whole."""
+"""An entry that has not changed for this long counts as complete."""
 MOST_FILES = 5_000
-"""So many of one entry are looked at, as many as are ever taken."""
+"""At most this many files of one entry are checked, as many as are ever taken."""
 _SUBMITTED = 0o777
-"""What `nbgrader submit` makes of a folder at its very end."""
+"""The permissions that `nbgrader submit` sets on a folder as its last step."""
 _FLAGS = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A file or a folder that lies in the inbound folder, whatever is in it."""
+    """A file or a folder in the inbound folder, whatever is in it."""
 
     name: str
     fingerprint: str
-    """Another one once anything in it has changed."""
+    """Changes when anything in the entry changes."""
     changed: datetime
-    """When Linux last saw it change, in UTC: nobody can set that."""
+    """The time of its last change (ctime), in UTC: its owner can't choose it."""
     is_whole: bool
     owner: str = ''
-    """Whose it may be: owners take turns, so that one with many entries delays nobody."""
+    """The owner it may belong to: owners take turns, so one with many entries delays no other."""
     problem: str = ''
-    """Why it can't be looked at."""
+    """Why it can't be read, or ''."""
 
     @property
     def key(self) -> str:
-        """Return its name as the database keeps it: no two names have one."""
+        """Return its name as the database stores it: unique for each name."""
         return key_of(self.name)
 
 
 def key_of(name: str) -> str:
-    """Return what stands for a name that may be no UTF-8."""
+    """Return a storable form of a name that may not be UTF-8."""
     return storable(name.replace('\\', r'\\'))
 
 
 def new_entries(
     folder: Path, seen: Mapping[str, str], rounds: Rounds | None = None
 ) -> Iterator[Entry]:
-    """Yield what is not `seen`, by its fingerprint, and was written to its end; oldest first.
+    """Yield complete entries whose fingerprint is not in `seen`; oldest first.
 
-    If there is much, it is some of it, with owners taking turns: see `rounds`. Raises OSError
-    where the folder itself can't be read; whatever goes wrong with an entry is its `problem`.
+    If there are many, only some of them, with owners taking turns: see `rounds`. Raises OSError if
+    the folder itself can't be read; an error with an entry is its `problem`.
     """
     with os.scandir(folder) as listed:
         names = sorted(each.name for each in listed if not each.name.startswith('.'))
@@ -69,7 +69,7 @@ def new_entries(
         try:
             found.append(_look(folder, name, before, trusted, rounds))
         except (FileNotFoundError, NotADirectoryError):
-            continue  # gone meanwhile: what is left of it is looked at again
+            continue  # removed meanwhile: what is left of it is checked in the next round
         except Exception as error:
             found.append(_with_problem(folder, name, before, error))
     yield from sorted(
@@ -81,15 +81,15 @@ def new_entries(
 def _to_look_at(
     folder: Path, names: Collection[str], seen: Mapping[str, str], trusted: Collection[int]
 ) -> Iterator[tuple[str, str]]:
-    """Yield the names of what may be new, and whose it may be."""
+    """Yield the names of entries that may be new, with their possible owners."""
     for name in names:
         try:
             status = os.lstat(folder / name)
         except OSError:
-            yield name, _named(name)  # to look at it tells why
+            yield name, _named(name)  # `_look` will find out why
             continue
         before = seen.get(key_of(name))
-        # nbgrader makes another folder for each submission: what one holds is handed in
+        # nbgrader makes a new folder for each submission, and does not change it afterwards
         if before is None or '+' not in name or not before.startswith(f'{_place(status)} '):
             yield name, _owner(name, status, trusted)
 
@@ -97,7 +97,7 @@ def _to_look_at(
 def _look(
     folder: Path, name: str, seen: str | None, trusted: Collection[int], rounds: Rounds
 ) -> Entry | None:
-    """Return an entry; None where it is as it was seen. Raises OSError where it is gone."""
+    """Return an entry; None if it has not changed since `seen`. Raises OSError if it is gone."""
     status = os.lstat(folder / name)
     digest, newest, names = hashlib.sha256(), status.st_ctime, set()
     for path, each in _tree(folder, name, status):
@@ -121,7 +121,7 @@ def _look(
 
 
 def _with_problem(folder: Path, name: str, seen: str | None, error: Exception) -> Entry | None:
-    """Return an entry that can't be looked at; None where that was seen."""
+    """Return an entry that can't be read; None if the same problem was seen before."""
     changed, now = 0.0, time.time()
     with contextlib.suppress(OSError):
         changed = os.lstat(folder / name).st_ctime
@@ -148,12 +148,12 @@ def _owner(name: str, status: os.stat_result, trusted: Collection[int]) -> str:
 
 
 def _named(name: str) -> str:
-    """Return whose an entry may be by its name, whatever form that has."""
+    """Return the owner that an entry's name suggests, whatever form it has."""
     return name.partition('+' if '+' in name else '_')[0]
 
 
 def _tree(folder: Path, name: str, status: os.stat_result) -> Iterator[tuple[str, os.stat_result]]:
-    """Yield what lies in an entry, by its path there; no link is followed."""
+    """Yield the paths in an entry with their status; links are not followed."""
     yield '', status
     if not stat.S_ISDIR(status.st_mode):
         return
@@ -166,7 +166,7 @@ def _tree(folder: Path, name: str, status: os.stat_result) -> Iterator[tuple[str
                 if left < 0:
                     return
                 yield f'{path}/{each}', os.lstat(each, dir_fd=inside)
-            if path.count('/') >= MAX_PARTS - 1:  # what lies deeper is not taken
+            if path.count('/') >= MAX_PARTS - 1:  # what is deeper is never taken
                 folders.clear()
     finally:
         os.close(descriptor)

@@ -1,4 +1,4 @@
-"""Take an entry of the inbound folder in: copies of its files, and a row for each submission."""
+"""Take in an entry of the inbound folder: copy its files, add a row for each submission."""
 
 import os
 import shutil
@@ -24,15 +24,15 @@ from grader.storage.submitted import known_students
 
 FOLDER = 'arrived'
 MOST_WAITING = 50
-"""Of one student: each takes room on the disk, and only the newest of a lesson is graded."""
+"""For one student: each takes space on the disk, and only the newest of a lesson is graded."""
 MOST_KEPT, MOST_KEPT_BYTES = 1_000, 1_000_000_000
-"""Of one student and lesson, those that wait and what became of earlier ones included: no program
-that hands in all night fills the disk, on which all others' work lies."""
+"""For one student and lesson, including earlier ones that were replaced: a program that hands
+in all night must not fill the disk, which everybody's work is on."""
 MAX_REASON = 500
 
 
 def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[Arrival]:
-    """Copy what an entry holds into gradebook/arrived/, and note it; return the new arrivals."""
+    """Copy an entry's submissions to gradebook/arrived/, record and return them."""
     shelf = course.gradebook / FOLDER
     shelf.mkdir(parents=True, exist_ok=True)
     waiting = queue.find(WAITING, KEEPING)
@@ -67,13 +67,13 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
 
 
 def refuse(queue: Queue, entry: Entry, reason: str) -> list[Arrival]:
-    """Note that an entry is left to a person, and why; return that."""
+    """Record that an entry is left to a person, and why; return that row."""
     row = _arrival(entry, REFUSED, reason=shorten(storable(reason), MAX_REASON))
     return queue.add(entry.key, entry.fingerprint, [row])
 
 
 def put_in_place(course: Course, arrival: Arrival) -> tuple[str, str]:
-    """Put an arrival where it is graded, as collect does; return what it was, and why."""
+    """Put a submission where it is graded, as collect does; return the outcome and its reason."""
     folder = course.gradebook / FOLDER / arrival.folder
     hand_in = _hand_in(folder, arrival)
     with gradebook_lock(course.gradebook):
@@ -81,20 +81,20 @@ def put_in_place(course: Course, arrival: Arrival) -> tuple[str, str]:
 
 
 def secret_of(course: Course, arrival: Arrival) -> str:
-    """Return nbgrader's secret of a submission; '' where it came without one."""
+    """Return nbgrader's secret of a submission; '' if it has none."""
     path = course.gradebook / FOLDER / arrival.folder / SECRET
     return path.read_bytes().decode(errors='replace') if path.is_file() else ''
 
 
 def discard(course: Course, arrivals: Iterable[Arrival]) -> None:
-    """Remove the copies of arrivals that lie in gradebook/submitted/ or beside it by now."""
+    """Remove the copies of submissions that are now in gradebook/submitted/ or kept elsewhere."""
     for each in arrivals:
         if each.folder:
             shutil.rmtree(course.gradebook / FOLDER / each.folder, ignore_errors=True)
 
 
 def tidy(course: Course, queue: Queue) -> None:
-    """Remove copies of which nothing is noted: the process ended before that, and begins anew."""
+    """Remove copies without a row: the process was ended before it recorded them."""
     known = {each.folder for each in queue.find(WAITING, KEEPING)}
     for left in (course.gradebook / FOLDER).glob('*'):
         if left.name not in known:
@@ -118,7 +118,7 @@ def _hand_in(folder: Path, arrival: Arrival) -> MatchedFile:
 
 
 def _why_no_room(course: Course, each: MatchedFile, waiting: Sequence[Arrival]) -> str:
-    """Say why one more of a student is left to a person; '' where there is room for it."""
+    """Return why a student's submission can't be taken in now; '' if there is room for it."""
     theirs = [other for other in waiting if other.student_id == each.student_id]
     if sum(other.state == WAITING for other in theirs) >= MOST_WAITING:
         return f'{MOST_WAITING} submissions of {each.student_id} wait'
@@ -142,7 +142,7 @@ def _size_of(folder: Path) -> int:
 
 
 def _keep(each: MatchedFile, shelf: Path) -> str:
-    """Copy a submission to a folder of its own, onto the disk itself; return its name."""
+    """Copy a submission to a new folder and flush it to the disk; return the folder's name."""
     folder = Path(tempfile.mkdtemp(prefix='', dir=shelf))
     files = {f'{each.assignment}.ipynb': each.notebook.readable, **each.extra}
     writer(files, None, secret=each.secret, left_out=each.left_out)(folder)
@@ -173,5 +173,5 @@ def _arrival(
 
 
 def _is_work(incoming: Incoming) -> bool:
-    """Whether a person should look at a file: a time of nbgrader's is not believed anyway."""
+    """Whether a person should look at a file: not if it is a .txt, such as timestamp.txt."""
     return not incoming.parts[-1].endswith('.txt')

@@ -1,4 +1,4 @@
-"""What was handed in and what became of it: a table that survives the end of any process."""
+"""The queue: what was handed in and what became of it, in a table that survives a restart."""
 
 import sqlite3
 from collections.abc import Iterable, Mapping
@@ -8,28 +8,28 @@ from grader.common.text import storable
 
 WAITING, GRADING, GRADED = 'waiting', 'grading', 'graded'
 KEEPING, REPLACED, REFUSED, FAILED = 'being kept', 'replaced', 'refused', 'failed'
-"""What became of an arrival; what is refused or has failed waits for a person.
+"""States of an arrival; a person has to look at one that is refused or has failed.
 
-What is `being kept` is not graded, for a later one is, and is yet to be put beside that.
+One `being kept` is not graded, because a later one is; it has yet to be stored beside that one.
 """
 
 
 @dataclass(frozen=True)
 class Arrival:
-    """One submission as it came in, or an entry that is nobody's."""
+    """One submission as it came in, or an entry that does not belong to a student."""
 
     number: int
     entry: str
-    """Its name in the inbound folder, strange bytes in it spelled out."""
+    """Its name in the inbound folder, with bytes that are not UTF-8 escaped."""
     arrived: float
-    """In seconds since 1970; no claim of whoever handed it in."""
+    """In Unix time, from the file system: a student can't choose it."""
     state: str
     student_id: str = ''
     assignment: str = ''
     folder: str = ''
-    """Where its files lie until they are graded, by its name in gradebook/arrived/."""
+    """The name of the folder in gradebook/arrived/ with its files, until they are graded."""
     reason: str = ''
-    """Why it was refused, has failed or was replaced."""
+    """Why it was refused, failed or was replaced."""
     started: float = 0.0
     ended: float = 0.0
     score: float | None = None
@@ -45,9 +45,9 @@ COLUMNS = tuple(field.name for field in fields(Arrival))
 
 
 class Queue:
-    """The table of one gradebook; one process writes into it, and any number read.
+    """The table of one gradebook; one process writes into it, and any number read it.
 
-    Who writes takes in from one inbound folder: what is said of entries of others stays as it is.
+    The writer serves one inbound folder, and does not change rows of entries in other folders.
     """
 
     def __init__(self, database: sqlite3.Connection, inbound: str = '') -> None:
@@ -55,9 +55,9 @@ class Queue:
         self._inbound = inbound
 
     def seen(self) -> dict[str, str]:
-        """Return the fingerprint of each entry that was looked into: the folder's own counts most.
+        """Return the fingerprint of each known entry; those in the own folder take precedence.
 
-        One of another folder is of use if both are the same, mounted twice.
+        Those of another folder are useful if both are the same folder, mounted twice.
         """
         return dict(
             self._database.execute(
@@ -66,7 +66,7 @@ class Queue:
         )
 
     def refused_entries(self) -> set[str]:
-        """Return the entries of the folder of which something is refused that is nobody's."""
+        """Return the names of refused entries in the folder that do not belong to a student."""
         rows = self._database.execute(
             "SELECT entry FROM arrivals WHERE inbound = ? AND state = ? AND student_id = ''",
             (self._inbound, REFUSED),
@@ -74,9 +74,9 @@ class Queue:
         return {entry for (entry,) in rows}
 
     def add(self, entry: str, fingerprint: str, arrivals: Iterable[Arrival]) -> list[Arrival]:
-        """Note what an entry held, all of it or nothing; return it with its numbers.
+        """Record what an entry contained, all of it or nothing; return it with its row numbers.
 
-        What was said of it as a whole before, when it held something else, is said no more.
+        An earlier refusal of the whole entry, when it had other content, is removed.
         """
         added = []
         with self._database:
@@ -94,9 +94,9 @@ class Queue:
         return added
 
     def forget(self, entry: str) -> bool:
-        """Say no more of an entry as a whole; return whether it is new, should it come back.
+        """Remove the refusal of an entry; return whether it would be read again if it came back.
 
-        One of which submissions were taken in is not: they would be handed in once more.
+        It would not be if submissions were taken from it: they would be handed in twice.
         """
         with self._database:
             self._withdraw(entry)
@@ -116,7 +116,7 @@ class Queue:
         )
 
     def update(self, *arrivals: Arrival) -> None:
-        """Note what has become of arrivals, of all of them or of none."""
+        """Store the new states of arrivals, of all of them or of none."""
         assigned = ', '.join(f'{name} = ?' for name in COLUMNS[1:])
         with self._database:
             self._database.executemany(
@@ -125,14 +125,14 @@ class Queue:
             )
 
     def resume(self) -> None:
-        """Let what was being graded when a process ended wait again."""
+        """Let submissions whose grading was interrupted wait again."""
         with self._database:
             self._database.execute(
                 'UPDATE arrivals SET state = ? WHERE state = ?', (WAITING, GRADING)
             )
 
     def find(self, *states: str, last: int | None = None) -> list[Arrival]:
-        """Return the arrivals in some states, in their order; perhaps only the `last` ones."""
+        """Return the arrivals in these states, in order; `last` limits them to the newest ones."""
         marks = ', '.join('?' * len(states))
         rows = self._database.execute(
             f'SELECT {", ".join(COLUMNS)} FROM arrivals WHERE state IN ({marks}) '
@@ -142,11 +142,11 @@ class Queue:
         return [Arrival(*row) for row in rows][::-1]
 
     def counts(self) -> Mapping[str, int]:
-        """Return how many arrivals are in each state."""
+        """Return the number of arrivals in each state."""
         return dict(self._database.execute('SELECT state, count(*) FROM arrivals GROUP BY state'))
 
     def starts(self) -> dict[tuple[str, str], list[float]]:
-        """Return when submissions of each student and assignment were graded, in their order."""
+        """Return when gradings of each student and assignment started, in order."""
         found: dict[tuple[str, str], list[float]] = {}
         rows = self._database.execute(
             'SELECT student_id, assignment, started FROM arrivals WHERE state IN (?, ?) '
@@ -159,5 +159,5 @@ class Queue:
 
 
 def _values(arrival: Arrival) -> list[object]:
-    """Return what a row holds: text of strangers, in names and reasons, is made storable."""
+    """Return the columns of a row; text of students, in names and reasons, is made storable."""
     return [storable(each) if isinstance(each, str) else each for each in astuple(arrival)[1:]]

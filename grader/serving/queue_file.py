@@ -1,4 +1,4 @@
-"""The file that holds the queue of a gradebook: opened to be served, or to be looked at alone."""
+"""The file of a gradebook's queue: open it to serve, or only to read it."""
 
 import sqlite3
 from collections.abc import Iterator
@@ -23,11 +23,11 @@ _SCHEMA = f"""
 
 @contextmanager
 def opened_queue(gradebook: Path, inbound: Path) -> Iterator[Queue]:
-    """Open the queue of a gradebook for what comes into a folder; make it where there is none."""
+    """Open the queue of a gradebook for an inbound folder; make it if there is none."""
     gradebook.mkdir(parents=True, exist_ok=True)
     folder = storable(str(inbound.resolve()))
     with closing(sqlite3.connect(gradebook / FILE, timeout=60)) as database:
-        database.execute('PRAGMA synchronous = FULL')  # after a power cut, too
+        database.execute('PRAGMA synchronous = FULL')  # survives a power cut, too
         _bring_up_to_date(database)
         database.executescript(_SCHEMA)
         _adopt(database, folder)
@@ -35,7 +35,7 @@ def opened_queue(gradebook: Path, inbound: Path) -> Iterator[Queue]:
 
 
 def _bring_up_to_date(database: sqlite3.Connection) -> None:
-    """Give tables that were made before there was a second inbound folder their column for it."""
+    """Add the column for the inbound folder to tables of an earlier version."""
     if not list(database.execute("SELECT 1 FROM sqlite_schema WHERE name = 'seen'")):
         return
     with database:
@@ -47,7 +47,7 @@ def _bring_up_to_date(database: sqlite3.Connection) -> None:
 
 
 def _adopt(database: sqlite3.Connection, folder: str) -> None:
-    """Take what came into folders that are gone for this one's: it was moved, or never noted."""
+    """Assign rows of folders that no longer exist to this one: it was moved, or not recorded."""
     known = {each for (each,) in database.execute('SELECT inbound FROM looked_into')}
     with database:
         for gone in sorted(each for each in known if not each or not Path(each).is_dir()):
@@ -59,7 +59,7 @@ def _adopt(database: sqlite3.Connection, folder: str) -> None:
 
 @contextmanager
 def queue_to_read(gradebook: Path) -> Iterator[Queue | None]:
-    """Open the queue of a gradebook to look at it alone; None where there is none."""
+    """Open the queue of a gradebook only to read it; None if there is none."""
     if not (gradebook / FILE).exists():
         yield None
         return

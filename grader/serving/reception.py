@@ -1,4 +1,4 @@
-"""Take in what is new, a little at a time; those who handed it in take turns."""
+"""Take in new entries, a little at a time; their owners take turns."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -11,11 +11,11 @@ from grader.serving.queue import REFUSED, Arrival
 from grader.serving.trouble import meets_all, noted
 
 BUDGET_SEC = 0.5
-"""How long entries are taken in before gradings are started and stored; one may take longer."""
+"""How long entries are taken in before gradings go on; one may take longer."""
 
 
 def look(desk: Desk) -> bool:
-    """Take in some of what is new in the inbound folder; return whether there was anything."""
+    """Take in some new entries of the inbound folder; return whether there were any."""
     waiting = list(new_entries(desk.inbound, desk.seen, desk.rounds))
     end, found = time.monotonic() + BUDGET_SEC, bool(waiting)
     if found:
@@ -36,9 +36,9 @@ def look(desk: Desk) -> bool:
 
 
 def next_entry(waiting: Sequence[Entry], last: Mapping[str, float]) -> Entry:
-    """Return which one is taken in next: the oldest; an owner waits for those served longer ago.
+    """Return the entry to take in next: the oldest, by the later of its time and its owner's turn.
 
-    So nobody overtakes with a second one, or under a second name, what came before it.
+    So a second entry of the same owner does not overtake older entries of others.
     """
     return min(
         waiting,
@@ -51,7 +51,7 @@ def next_entry(waiting: Sequence[Entry], last: Mapping[str, float]) -> Entry:
 
 
 def _arrivals(desk: Desk, entry: Entry) -> list[Arrival]:
-    """Note what an entry holds; whatever goes wrong with it alone is why it is refused."""
+    """Record what an entry contains; an error with this entry alone is why it is refused."""
     if entry.problem:
         return refuse(desk.queue, entry, entry.problem)
     try:

@@ -1,29 +1,30 @@
-"""Rounds over what lies in the inbound folder: nobody's many files keep others from being seen."""
+"""Rounds over the inbound folder: one owner's many files don't keep those of others waiting."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 MOST_FILES_AT_ONCE = 20_000
-"""So many are looked at, in a fifth of a second, before what is graded is started and stored."""
+"""Files that are checked in one go, in a fifth of a second, before gradings go on."""
 
 
 @dataclass
 class Rounds:
-    """Which entries were looked at in this round: those that were not come next."""
+    """Which entries were checked in this round: the others come next."""
 
     is_under_way: bool = False
-    """Whether some have not been looked at yet since the round began."""
+    """Whether some entries have not been checked yet in this round."""
     _turn: int = 0
     _last: dict[str, int] = field(default_factory=dict)
-    """When each was looked at last."""
+    """The turn in which each entry was checked last."""
     _since: set[str] = field(default_factory=set)
     _left: int = 0
 
     def of(self, entries: Iterable[tuple[str, str]]) -> Iterator[str]:
-        """Yield names of entries, given with their owners, until enough was `counted`.
+        """Yield names of entries, given with their owners, until enough files were `counted`.
 
-        Of each owner one comes before anybody's second one, and the one that waits longest first.
+        One entry of each owner comes before the second one of any; the longest unchecked come
+        first.
         """
         names = dict(sorted(entries, key=lambda each: (self._last.get(each[0], 0), each[0])))
         ranks: dict[str, int] = {}
@@ -45,9 +46,9 @@ class Rounds:
             self.begin()
 
     def counted(self, files: int) -> None:
-        """Note how many files were looked at."""
+        """Subtract the files that were checked."""
         self._left -= files
 
     def begin(self) -> None:
-        """Begin a round: something has changed, or all was looked at."""
+        """Begin a new round: something has changed, or all entries were checked."""
         self._since.clear()

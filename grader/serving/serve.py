@@ -1,4 +1,4 @@
-"""The resident process: take in, grade, write and release, again and again, until it is ended."""
+"""The resident process: take in, grade, store and release, again and again, until it is ended."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -22,7 +22,7 @@ from grader.storage.database import one_engine
 from grader.workers.backend import Backend
 
 LOOK_SEC = 0.25
-"""How often the inbound folder is looked at."""
+"""Interval at which the inbound folder is checked."""
 LOCK = '.serve.lock'
 
 
@@ -37,11 +37,11 @@ def serve(
     say: Callable[[str], None] = print,
     changed: Callable[[Queue], object] = lambda queue: None,
 ) -> None:
-    """Grade what comes into `inbound`, and release its feedback, until KeyboardInterrupt.
+    """Grade what arrives in `inbound`, and release its feedback, until KeyboardInterrupt.
 
-    With `once`, until nothing is left to do. `say` gets a line for each event, `changed` the queue
-    after each change. Raises CourseError where another process serves this gradebook, and
-    GradebookError where it can't be written to; what was begun is done by the next one.
+    With `once`, until there is nothing left to do. `say` gets a line for each event, `changed` the
+    queue after each change. Raises CourseError if another process serves this gradebook, and
+    GradebookError if it can't be written to; the next run finishes what was begun.
     """
     with (
         only_one(course),
@@ -72,7 +72,7 @@ def serve(
 
 @contextmanager
 def only_one(course: Course) -> Iterator[None]:
-    """Hold the right to serve a gradebook. Raises CourseError where another process has it."""
+    """Hold the lock for serving a gradebook. Raises CourseError if another process has it."""
     course.gradebook.mkdir(parents=True, exist_ok=True)
     lock = FileLock(course.gradebook / LOCK, fallback_to_soft=False)
     try:

@@ -1,4 +1,4 @@
-"""What the resident process is at: lines for a terminal, and a page that needs nothing else."""
+"""The state of the resident process: lines for a terminal, and a self-contained HTML page."""
 
 import time
 from collections.abc import Iterator, Mapping
@@ -18,11 +18,11 @@ from grader.storage.deadlines import Deadlines, deadlines
 
 PAGE = 'serve_status.html'
 SHOWN = 20
-"""Rows of one kind; the rest is counted. …"""
+"""How many rows of a state are listed; the others are only counted."""
 FOR_A_PERSON = REFUSED, FAILED
-"""… On a terminal, all of these are shown: nobody's many entries hide another's."""
+"""States of which a terminal lists all rows, so that none is hidden by many others."""
 LAST = 200
-"""So many of the last gradings tell how long one takes."""
+"""The number of latest gradings from which the usual time to feedback is computed."""
 _BEING_GRADED = 'Being graded'
 _ENDED = 'Not graded to the end: the next ./course serve grades it'
 _PAGE = """<!doctype html>
@@ -38,9 +38,10 @@ li {{ overflow-wrap: anywhere }}</style></head>
 def sections(
     course: Course, queue: Queue, now: float, *, shows_all: bool
 ) -> Iterator[tuple[str, list[str]]]:
-    """Yield what there is to tell: a heading, and a line for each submission below it.
+    """Yield headings, each with a line for every submission below it.
 
-    `shows_all` that waits for a person; else it says where they are listed.
+    If `shows_all`, submissions that wait for a person are listed completely; otherwise a line says
+    where they are listed.
     """
     rules = (deadlines(course.gradebook) or Deadlines()).resubmissions
     starts = queue.starts()
@@ -79,7 +80,7 @@ def status_lines(course: Course, queue: Queue | None) -> Iterator[str]:
 
 
 def write_status_page(course: Course, queue: Queue) -> Path:
-    """Write the page into the gradebook; return its path."""
+    """Write the status page into the gradebook; return its path."""
     parts = [f'<p>As of {_clock(time.time())}</p>']
     for heading, lines in sections(course, queue, time.time(), shows_all=False):
         items = ''.join(f'<li>{escape(visible(line))}</li>' for line in lines)

@@ -1,4 +1,4 @@
-"""What went wrong with one submission and costs only that one, and what would meet all."""
+"""Distinguish errors of a single submission from those that would affect all submissions."""
 
 import logging
 import sqlite3
@@ -18,15 +18,15 @@ _OF_ONE = (UnreadableSubmission, DamagedResult, TaskFailed)
 
 
 def meets_all(error: Exception) -> bool:
-    """Whether the next one would meet it, too: of the disk, the gradebook or the course."""
+    """Whether an error would affect the next submission, too: of disk, gradebook or course."""
     if isinstance(error, OSError):
         return error.errno in MACHINE_FULL
-    if isinstance(error, DBAPIError):  # what SQLite or PostgreSQL says, as SQLAlchemy tells it
+    if isinstance(error, DBAPIError):  # an error of SQLite or PostgreSQL, wrapped by SQLAlchemy
         return not isinstance(error, DataError | IntegrityError)
     return isinstance(error, CourseError | sqlite3.Error) and not isinstance(error, _OF_ONE)
 
 
 def noted(which: str, error: Exception) -> str:
-    """Log what nobody has expected, and return it for a line and the list of submissions."""
+    """Log an unexpected error; return it as text for the terminal and the list of submissions."""
     logging.error('%s', printable(which), exc_info=error)
     return f'the grader failed: {type(error).__name__}: {error}'

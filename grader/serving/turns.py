@@ -1,4 +1,4 @@
-"""Whose turn it is: fair between students, the newest of each first, one of theirs at a time."""
+"""Whose turn it is: fair between students; one submission of each at a time, the newest first."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -7,7 +7,7 @@ from grader.storage.resubmissions import ResubmissionRules
 
 HOUR_SEC = 3_600.0
 Starts = Mapping[tuple[str, str], Sequence[float]]
-"""When submissions of each student and assignment were graded."""
+"""By student and assignment: when gradings started, in Unix time."""
 
 
 def next_turn(
@@ -17,9 +17,10 @@ def next_turn(
     rules: ResubmissionRules,
     now: float,
 ) -> Arrival | None:
-    """Return what is graded next; None where nothing is to be.
+    """Return the submission to grade next; None if there is none.
 
-    First come students whose last turn is longest ago; nobody `busy`, of whom one is graded now.
+    Students whose last turn is longest ago come first; those in `busy`, who have a submission
+    being graded, are skipped.
     """
     turns = []
     for student, theirs in _by_student(waiting):
@@ -34,7 +35,7 @@ def next_turn(
 
 
 def replaced_by(chosen: Arrival, waiting: Sequence[Arrival]) -> list[Arrival]:
-    """Return what need not be graded: a later one of the same student and lesson will be."""
+    """Return earlier submissions for the same lesson as `chosen`: they need not be graded."""
     return [
         each
         for each in waiting
@@ -44,7 +45,7 @@ def replaced_by(chosen: Arrival, waiting: Sequence[Arrival]) -> list[Arrival]:
 
 
 def why_it_waits(starts: Sequence[float], rules: ResubmissionRules, now: float) -> str:
-    """Say why one more submission is not graded now, if the rules forbid it."""
+    """Return why the rules do not allow one more grading now, or ''."""
     if rules.in_total is not None and len(starts) >= rules.in_total:
         return f'{len(starts)} were graded, and the course grades {rules.in_total}: it is kept'
     recent = [at for at in starts if at > now - HOUR_SEC]
@@ -58,7 +59,7 @@ def why_it_waits(starts: Sequence[float], rules: ResubmissionRules, now: float) 
 
 
 def _by_student(waiting: Sequence[Arrival]) -> Iterator[tuple[str, list[Arrival]]]:
-    """Yield each student with the newest of theirs for each assignment."""
+    """Yield each student with the newest submission for each assignment."""
     newest: dict[tuple[str, str], Arrival] = {}
     for each in sorted(waiting, key=lambda each: (each.arrived, each.number)):
         newest[each.whose] = each

@@ -1,4 +1,4 @@
-"""How many submissions at a time the processors can take, as Linux tells how busy they are."""
+"""How many submissions are graded at a time, depending on how busy Linux says the CPUs are."""
 
 import asyncio
 from typing import Self
@@ -8,15 +8,15 @@ from my_robot_basics.session import pressure
 from grader.sandbox.limits import BUSY_SHARE, IDLE_SHARE
 
 LOOK_SEC = 5.0
-"""What came of a change has to show before the next one."""
+"""Interval between changes: the effect of one has to show before the next one."""
 
 
 class AdaptiveSemaphore:
-    """An `async with` of it lets in `least` at a time, and more while processors stand idle.
+    """A semaphore for `async with`: it admits `least` at a time, and more while CPUs are idle.
 
-    It looks when one leaves, every LOOK_SEC: for which share of that time did some process wait
-    for a processor? Where it is small, `step` more get in, up to `most`; where it is large, so
-    many fewer. Where Linux does not tell, it stays at `least`. To be used on one event loop.
+    Every LOOK_SEC, when one leaves, it checks in which share of that time some process waited for
+    a CPU. If the share is small, `step` more are admitted, up to `most`; if it is large, `step`
+    fewer. If Linux does not report it, `least` are admitted. Use it on one event loop only.
     """
 
     def __init__(self, *, least: int, most: int, step: int) -> None:
@@ -32,7 +32,7 @@ class AdaptiveSemaphore:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        """Leave it to the next, and look how busy the machine is."""
+        """Release the place, and check how busy the machine is."""
         stalled_sec, wall_sec = pressure.stalled_sec(), self._watch.wall_sec()
         if wall_sec >= LOOK_SEC and stalled_sec:
             self._follow((stalled_sec - self._stalled_sec) / wall_sec)
@@ -52,7 +52,7 @@ class AdaptiveSemaphore:
             self._too_many += before - self.allowed
 
     def _give(self, places: int) -> None:
-        """Let in so many more; those who were too many are not replaced."""
+        """Release places, except as many as have to be removed."""
         kept = min(self._too_many, places)
         self._too_many -= kept
         for _ in range(places - kept):

@@ -1,4 +1,4 @@
-"""What grades: the worker processes of this machine, or those of a cluster."""
+"""The interface of what grades: worker processes of this machine, or of a cluster."""
 
 from concurrent.futures import Future
 from typing import Protocol, Self
@@ -12,10 +12,10 @@ from grader.storage.pipeline import unanswered
 
 
 class Backend(Protocol):
-    """Takes tasks inside its `with`; what is not done when that is left is called off."""
+    """Takes tasks inside its `with`; unfinished tasks are cancelled at the end."""
 
     capacity: int
-    """How many submissions it works on at a time."""
+    """How many submissions it grades at a time."""
 
     def __enter__(self) -> Self:
         """Begin to take tasks."""
@@ -26,15 +26,15 @@ class Backend(Protocol):
         ...
 
     def begin(self) -> None:
-        """Prepare for a task, of which it is known that there is going to be one."""
+        """Prepare, because a task is going to be submitted."""
         ...
 
     def require_isolation(self, *, trust_students: bool) -> bool:
-        """Return whether student code runs in a sandbox; raises CourseError where it must."""
+        """Return whether student code runs in a sandbox. Raises CourseError if it has to."""
         ...
 
     def submit(self, task: GradingTask) -> 'Future[Result]':
-        """Grade a task as soon as there is room. The future raises TaskFailed for no result."""
+        """Grade a task when there is room. The future raises TaskFailed if there is no result."""
         ...
 
 
@@ -46,7 +46,7 @@ def submit_for_grading(
     seed: str,
     trust_students: bool,
 ) -> 'Future[Result]':
-    """Restore a submission from a prepared template, and have it run with the inputs of a seed."""
+    """Restore a submission from a prepared template; have it run with the inputs of a seed."""
     if submission.problem:
         nothing: Future[Result] = Future()
         nothing.set_result(Result(unanswered(template, submission.problem), 0.0))
@@ -62,7 +62,7 @@ def submit_for_grading(
 
 
 def _restored(submission: Submission, template: AssignmentTemplate) -> NotebookNode:
-    assert submission.notebook is not None  # else it has a problem
+    assert submission.notebook is not None  # a submission without one has a problem
     notebook = restore(submission.notebook, template).notebook
     notebook.metadata[KEY].notes += submission.notes
     return notebook

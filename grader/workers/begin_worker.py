@@ -1,7 +1,6 @@
-"""The process of a worker, before what takes long to import: its servers import meanwhile.
+"""The main program of a worker: fork servers start before the slow imports, and import meanwhile.
 
-`python -m grader.workers.begin_worker HANDLE` is started by grader.workers, and is of no use
-otherwise.
+`python -m grader.workers.begin_worker HANDLE` is started by grader.workers; it has no other use.
 """
 
 import gc
@@ -12,7 +11,7 @@ from grader.kernels.fork_servers import start_servers
 
 
 def main(handle: str) -> None:
-    """Serve the socket of that number."""
+    """Serve the socket with that file descriptor."""
     start_servers()
     with uncollected():
         leave_out_formats()
@@ -20,7 +19,7 @@ def main(handle: str) -> None:
 
         worker.prepare()
     worker.main(handle)
-    gc.freeze()  # or Python looks through all of it for garbage before it ends
+    gc.freeze()  # or Python searches all objects for garbage before it exits
 
 
 if __name__ == '__main__':

@@ -1,4 +1,4 @@
-"""Many machines that grade: a Dask cluster does what worker processes do on this one."""
+"""Grade on many machines: a Dask cluster does what worker processes do on this machine."""
 
 import json
 import sys
@@ -14,14 +14,14 @@ from grader.workers.dask_client import CONNECT_TIMEOUT_SEC, Certificates, check_
 
 _START = 'Start workers from the same checkout, set up by ./course: .venv/bin/dask worker ADDRESS'
 LOOK_SEC = 5.0
-"""How often we look whether the scheduler is still there."""
+"""Interval at which we check whether the scheduler is still there."""
 
 
 class Cluster:
-    """Grades tasks on the workers of a Dask scheduler; leaving the `with` calls the rest off."""
+    """Grades tasks on a Dask scheduler's workers; at the end of `with`, the rest is cancelled."""
 
     def __init__(self, address: str, certificates: Certificates | None = None) -> None:
-        """Raise ClusterError where the address can't be had safely."""
+        """Raises ClusterError if the address is invalid or not safe to use."""
         check_address(address)
         self._address = address
         self._certificates = certificates or Certificates()
@@ -30,7 +30,7 @@ class Cluster:
         self.capacity = 0
 
     def __enter__(self) -> Self:
-        """Connect, and look at each worker: ClusterError where one would not grade as we do."""
+        """Connect, and check each worker: raises ClusterError if one would not grade as we do."""
         self._client = connected(self._address, self._certificates)
         try:
             self.capacity = self._look_at_workers()
@@ -42,7 +42,7 @@ class Cluster:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Call off what is not done; what a worker is at, it ends for nothing."""
+        """Cancel unfinished tasks; results of those that a worker is grading are discarded."""
         self._left.set()
         self._watch.join()
         if self._client.status == 'running':
@@ -50,7 +50,7 @@ class Cluster:
         self._client.close()
 
     def begin(self) -> None:
-        """Do nothing: a cluster's workers are there."""
+        """Do nothing: a cluster's workers are running already."""
 
     def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return True: a worker without a sandbox grades nothing."""
@@ -59,9 +59,10 @@ class Cluster:
     def submit(self, task: GradingTask) -> 'Future[Result]':
         """Have a task graded.
 
-        The future raises TaskFailed for no result, and ClusterError where the cluster is lost.
+        The future raises TaskFailed if there is no result, and ClusterError if the connection is
+        lost.
         """
-        from grader.workers import dask_worker  # needs Dask, which one machine does without
+        from grader.workers import dask_worker  # imports Dask, which is not needed on one machine
 
         work: Future[Result] = Future()
         asked = self._client.submit(dask_worker.grade, pack(task), machinery(), pure=False)
@@ -70,7 +71,7 @@ class Cluster:
         return work
 
     def _settle(self, asked: Any, task: GradingTask) -> None:
-        """Pass on what came of a task; called by Dask, in a thread of its own."""
+        """Set the result of a task; Dask calls this in a thread of its own."""
         work = self._asked.pop(asked)
         try:
             if asked.status == 'cancelled':
@@ -84,7 +85,7 @@ class Cluster:
             work.set_result(unpack(answer, task))
         except ClusterError as error:
             work.set_exception(error)
-        except Exception as error:  # Dask has lost several workers over it, for instance
+        except Exception as error:  # for example because several workers died of it
             work.set_exception(
                 error
                 if isinstance(error, TaskFailed)
@@ -92,7 +93,7 @@ class Cluster:
             )
 
     def _look_at_workers(self) -> int:
-        """Return how many submissions all workers have room for; refuse one that won't do."""
+        """Return how many submissions all workers take. Raises ClusterError for a bad worker."""
         from grader.workers import dask_worker
 
         with suppress(TimeoutError):
@@ -101,7 +102,7 @@ class Cluster:
         for address, said in self._client.run(dask_worker.describe, on_error='return').items():
             check_address(address)
             if isinstance(said, OSError):
-                continue  # it has gone meanwhile
+                continue  # this worker is gone
             if isinstance(said, BaseException):
                 raise ClusterError(
                     f"the worker {address} can't grade: {type(said).__name__}: {said}. {_START}"
@@ -115,12 +116,12 @@ class Cluster:
         return capacity
 
     def _look_after(self) -> None:
-        """Say so while there is no worker; whatever was being graded waits for one."""
+        """Warn if there is no worker; tasks then wait for one."""
         warned = False
         while not self._left.wait(LOOK_SEC):
             try:
                 workers = self._client.scheduler_info()['workers']
-            except (OSError, ValueError, KeyError):  # no scheduler any more, as its futures tell
+            except (OSError, ValueError, KeyError):  # the scheduler is gone; the futures report it
                 return
             if not workers and not warned:
                 print(f'waiting: {self._address} has lost all workers', file=sys.stderr)
@@ -136,7 +137,7 @@ def _refused(answer: str) -> dict | None:
 
 
 def _difference(about: dict) -> str:
-    """Say in a sentence why a worker won't do."""
+    """Return in a sentence why a worker is not accepted."""
     if about['missing']:
         return f'refuses: {about["missing"]}'
     ours = versions()

@@ -1,4 +1,4 @@
-"""Connect to the scheduler of a Dask cluster, and only where nobody else can listen or speak."""
+"""Connect to a Dask scheduler, and only if others can neither read nor send messages."""
 
 import ipaddress
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_TIMEOUT_SEC = 30.0
-"""How long a scheduler may take to answer, or a first worker to come."""
+"""How long a scheduler may take to answer, or a first worker to connect."""
 
 
 @dataclass(frozen=True)
 class Certificates:
-    """Files for TLS, as `dask scheduler` takes them; Dask's configuration for those not named."""
+    """Files for TLS, as `dask scheduler` takes them; for those not given, Dask's configuration."""
 
     ca_file: str | None = None
     cert: str | None = None
@@ -24,7 +24,7 @@ class Certificates:
 
 
 def check_address(address: str) -> None:
-    """Raise ClusterError unless nobody can listen in on, or speak to, what is at an address."""
+    """Raise ClusterError if others could read what is sent to an address, or send to it."""
     parts = urlsplit(address)
     if parts.scheme not in ('tcp', 'tls') or not parts.hostname:
         raise ClusterError(
@@ -48,7 +48,7 @@ def _is_loopback(host: str) -> bool:
 
 
 def connected(address: str, certificates: Certificates) -> 'Client':
-    """Return a client of a scheduler. Raises ClusterError where there is none, or no Dask."""
+    """Return a client of a scheduler. Raises ClusterError if there is none, or no Dask."""
     try:
         from distributed import Client, Security
     except ModuleNotFoundError as error:
@@ -66,7 +66,7 @@ def connected(address: str, certificates: Certificates) -> 'Client':
         security = Security(
             require_encryption=True, **{name: file for name, file in named.items() if file}
         )
-        if not all(getattr(security, name) for name in named):  # Dask's configuration counts
+        if not all(getattr(security, name) for name in named):  # from Dask's configuration, too
             raise ClusterError(
                 f'{address} needs certificates: name them with --tls-ca-file, --tls-cert and '
                 "--tls-key, or in Dask's own configuration"

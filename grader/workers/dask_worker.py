@@ -1,4 +1,4 @@
-"""What runs on a worker of a Dask cluster: text goes in, text comes out."""
+"""What runs on a worker of a Dask cluster: it takes text and returns text."""
 
 import asyncio
 import json
@@ -15,18 +15,18 @@ from grader.sandbox.limits import IN_FLIGHT_EACH
 from grader.workers.workers import Workers
 
 _once = threading.Lock()
-"""Several threads of a worker ask at the same time."""
+"""Several threads of a worker may call `_described` at the same time."""
 
 
 async def describe(dask_worker: Worker) -> str:
-    """Return as JSON what a worker grades with, what its sandbox lacks, and its room."""
+    """Return a worker's versions, what its sandbox lacks, and its capacity, as JSON."""
     return await asyncio.to_thread(_described, dask_worker.state.nthreads)
 
 
 def grade(text: str, wanted: str) -> str:
-    """Grade a packed task; return what came of it as JSON.
+    """Grade a packed task; return its result as JSON.
 
-    Or why this worker refuses to: it is not the `wanted` machinery, or has no sandbox.
+    If this worker's `machinery` is not `wanted`, or it has no sandbox, return why it refuses.
     """
     in_flight = get_worker().state.nthreads
     about = json.loads(_described(in_flight))
@@ -42,7 +42,7 @@ def grade(text: str, wanted: str) -> str:
 def _workers(in_flight: int) -> Workers:
     """Return this machine's worker processes: they end when this process does, however it ends.
 
-    Threads of Dask's wait for them; student code is run by none of Dask's processes.
+    Dask's threads wait for them; student code never runs in a process of Dask.
     """
     number = min(-(-in_flight // IN_FLIGHT_EACH), len(os.sched_getaffinity(0)))
     return Workers(number, in_flight=in_flight).__enter__()

@@ -1,6 +1,6 @@
-"""A process that grades: tasks come in over a socket, results go back, until it is closed.
+"""A process that grades: it receives tasks over a socket and sends results until it is closed.
 
-`grader.workers.begin_worker` is what runs in it.
+`grader.workers.begin_worker` is its main program.
 """
 
 import asyncio
@@ -16,19 +16,19 @@ from grader.kernels.isolation import look_ahead
 from grader.sandbox.limits import MAX_TASK_BYTES
 
 BEAT_SEC = 5.0
-"""How often a worker says that it is alive, whatever it is at."""
+"""Interval at which a worker sends a sign of life, whatever it is doing."""
 DEAD_SEC = 180
-"""A worker that does nothing for so long ends, even if the run that would end it is gone."""
+"""If its event loop is blocked for so long, a worker ends, even if its parent process is gone."""
 _HEAD = struct.Struct('>QQ')
 """The number of a task, and how many bytes of JSON follow."""
 BEAT = 0
-"""Stands for the number of a task: nothing follows."""
+"""Sent instead of the number of a task, as a sign of life: no JSON follows."""
 
 
 async def receive(reader: asyncio.StreamReader, *, most: int) -> tuple[int, str] | None:
     """Wait for a numbered text of at most `most` bytes.
 
-    None where the other end is gone, or claims to have more to say.
+    Returns None if the other end is gone, or announces more bytes.
     """
     try:
         number, size = _HEAD.unpack(await reader.readexactly(_HEAD.size))
@@ -40,13 +40,13 @@ async def receive(reader: asyncio.StreamReader, *, most: int) -> tuple[int, str]
 
 
 async def send(writer: asyncio.StreamWriter, number: int, text: str = '') -> None:
-    """Send a numbered text. Raises ConnectionError where the other end is gone."""
+    """Send a numbered text. Raises ConnectionError if the other end is gone."""
     writer.write(_HEAD.pack(number, len(text)) + text.encode('ascii'))
     await writer.drain()
 
 
 async def serve(connection: socket.socket) -> None:
-    """Grade whatever comes as soon as it comes; end everything once the other end is gone."""
+    """Grade each task as soon as it arrives; end everything when the other end is gone."""
     reader, writer = await asyncio.open_connection(sock=connection)
     under_way = {asyncio.create_task(_beat(writer))}
     try:
@@ -74,7 +74,7 @@ async def _beat(writer: asyncio.StreamWriter) -> None:
 
 
 def main(handle: str) -> None:
-    """Serve the socket of that number; nothing that is started from here inherits it."""
+    """Serve the socket with that file descriptor; processes started from here don't inherit it."""
     log_visibly()
     connection = socket.socket(fileno=int(handle))
     os.set_inheritable(connection.fileno(), False)
@@ -82,6 +82,6 @@ def main(handle: str) -> None:
 
 
 def prepare() -> None:
-    """Prepare what the first task needs; processes do it side by side."""
+    """Prepare what the first task needs, most of it in other processes or threads."""
     look_ahead()
     importlib.import_module('grader.judging.execute')

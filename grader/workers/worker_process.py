@@ -1,4 +1,4 @@
-"""A process that grades, as its parent sees it: start, tasks, missed beats, end."""
+"""A process that grades, from its parent's side: start, tasks, missed signs of life, end."""
 
 import asyncio
 import itertools
@@ -12,17 +12,17 @@ from grader.sandbox.limits import (
 from grader.workers.worker import BEAT, BEAT_SEC, receive, send
 
 MOST_MISSED = 24
-"""A worker that says nothing for so many beats hangs: two minutes, on however busy a machine."""
+"""A worker that misses this many signs of life hangs: two minutes, even on a busy machine."""
 
 END_GRACE_SEC = 30.0
-"""What a worker may take to end its kernels."""
+"""How long a worker may take to end its kernels."""
 
 REAP_SEC = 0.02
-"""How often it is looked whether it has ended."""
+"""Interval at which we check whether it has ended."""
 
 
 class WorkerProcess:
-    """One process; it ends when it is told to, or with the event loop that it was made on."""
+    """A worker process; it ends when end() is called, or with the event loop that started it."""
 
     def __init__(self, command: tuple[str, ...]) -> None:
         self._command = command
@@ -40,7 +40,7 @@ class WorkerProcess:
         return len(self._asked)
 
     async def grade(self, text: str) -> str | None:
-        """Return what came of a packed task; None where the process ended before it."""
+        """Return the packed result of a task; None if the process ended before that."""
         number = next(self._numbers)
         answer = self._asked[number] = asyncio.get_running_loop().create_future()
         try:
@@ -67,7 +67,7 @@ class WorkerProcess:
                 [*self._command, str(theirs.fileno())],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
-                stdout=2,  # whatever prints there, the table is not disturbed
+                stdout=2,  # what it prints must not get into the table on stdout
                 start_new_session=True,  # the process that started the run handles Ctrl-C
             )
         watch = asyncio.create_task(self._watch(process))
@@ -79,7 +79,7 @@ class WorkerProcess:
                 answer = self._asked.get(found[0])
                 if answer is not None and not answer.done():
                     answer.set_result(found[1])
-            process.kill()  # if it has not ended, it has lost its way
+            process.kill()  # the connection is closed or broken: if it still runs, it is of no use
         finally:
             self.ended = True
             self._connected.set()
@@ -92,7 +92,7 @@ class WorkerProcess:
             await _reap(process)
 
     async def _watch(self, process: subprocess.Popen) -> None:
-        """Kill a silent process; beats are counted, because a machine may sleep meanwhile."""
+        """Kill a silent process; misses are counted, not seconds: the machine may have slept."""
         while self._missed < MOST_MISSED:
             await asyncio.sleep(BEAT_SEC)
             self._missed += 1
@@ -100,7 +100,7 @@ class WorkerProcess:
 
 
 async def _reap(process: subprocess.Popen) -> None:
-    """Wait for a process that was told to end; without a thread: Python may be ending, too."""
+    """Wait until the process has ended; without a thread, as Python may be shutting down."""
     deadline = time.monotonic() + END_GRACE_SEC
     while process.poll() is None:
         if time.monotonic() > deadline:

@@ -25,7 +25,7 @@ TRIES = 3
 
 
 class Workers:
-    """Grades tasks in worker processes; leaving the `with` ends them and all that they run."""
+    """Grades tasks in worker processes; the end of `with` ends them and all that they run."""
 
     def __init__(
         self,
@@ -34,10 +34,10 @@ class Workers:
         in_flight: int | None = None,
         command: tuple[str, ...] | None = None,
     ) -> None:
-        """Use so many processes, by default one for each core, as soon as there is work for them.
+        """Use `number` processes, by default one for each core; they start when there is work.
 
-        They have no more than `in_flight` submissions together, by default what the processors
-        can take; and no more than memory allows.
+        Together they grade `in_flight` submissions at a time, by default as many as the processors
+        can take, and never more than memory allows.
         """
         self._number = number or len(os.sched_getaffinity(0))
         least = in_flight or IN_FLIGHT_EACH * self._number
@@ -54,7 +54,7 @@ class Workers:
         self._entered = 0
 
     def __enter__(self) -> Self:
-        """Begin to take tasks; inside a `with` of the same, nothing changes."""
+        """Begin to take tasks; a nested `with` changes nothing."""
         if not self._entered:
             self._pool.__enter__()
         self._entered += 1
@@ -67,7 +67,7 @@ class Workers:
             self._pool.__exit__(*exception)
 
     def begin(self) -> None:
-        """Start the first process: it imports while this one does other things."""
+        """Start the first process: it imports while this process continues."""
         if not self._processes:
             self._pool.submit(self._start)
 
@@ -76,15 +76,15 @@ class Workers:
             self._next()
 
     def require_isolation(self, *, trust_students: bool = False) -> bool:
-        """Return whether student code runs in a sandbox; raises CourseError where it must."""
+        """Return whether student code runs in a sandbox. Raises CourseError if it has to."""
         return require_isolation(trust_students=trust_students)
 
     def submit(self, task: GradingTask) -> 'Future[Result]':
-        """Grade a task as soon as there is room. The future raises TaskFailed for no result."""
+        """Grade a task when there is room. The future raises TaskFailed if there is no result."""
         return self._pool.submit(self._graded, task)
 
     def submit_text(self, text: str) -> 'Future[str]':
-        """Grade a packed task; the future brings what came of it, packed."""
+        """Grade a packed task; the future has the packed result."""
         return self._pool.submit(self._tried, text)
 
     async def _graded(self, task: GradingTask) -> Result:
@@ -97,7 +97,7 @@ class Workers:
     async def _answer(self, text: str) -> str:
         answer = await self._next().grade(text)
         for _ in range(TRIES - 1):
-            if answer is None:  # alone, so that nobody else's submission can end it
+            if answer is None:  # in a new process alone, where no other submission can end it
                 alone = WorkerProcess(self._command)
                 try:
                     answer = await alone.grade(text)
@@ -108,9 +108,9 @@ class Workers:
         return answer
 
     def _next(self) -> 'WorkerProcess':
-        """Return the worker that has least to do; a new one where all have enough to do.
+        """Return the worker with the fewest tasks, or a new one if all have enough.
 
-        One takes some seconds to begin: for two submissions it is not worth while.
+        A worker takes some seconds to start: for two submissions that is not worthwhile.
         """
         self._processes = [worker for worker in self._processes if not worker.ended]
         idlest = min(self._processes, key=lambda worker: worker.load, default=None)
