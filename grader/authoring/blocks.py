@@ -1,7 +1,7 @@
 """Split a text into the blocks that are translated one by one: paragraphs, lists, table rows.
 
-A block is what stands between blank lines, outside of fenced code; each row of a table is one of
-its own, so that a change of one row leaves the others as they are.
+A block is the text between blank lines, except in fenced code. Each row of a table is a block, so
+that a change of one row does not affect the others.
 """
 
 import re
@@ -16,7 +16,7 @@ _WORD = re.compile(r'[^\W\d_]{2,}')
 
 
 def split_blocks(text: str) -> list[str]:
-    """Return, alternately, what is between the blocks and the blocks; joined they are the text.
+    """Return gaps and blocks alternately, beginning with a gap; joined, they are the text.
 
     Every second item, from the second on, is a block.
     """
@@ -26,7 +26,7 @@ def split_blocks(text: str) -> list[str]:
         begins_anew = kind == 'row' or (kind == 'block' and pieces[-1].startswith('|'))
         if (kind != 'gap') != is_block or (is_block and begins_anew):
             if is_block and kind != 'gap':
-                pieces.append('')  # nothing but the end of a line lies between two rows
+                pieces.append('')  # the gap between two rows, which gets the line end
             pieces.append('')
             is_block = kind != 'gap'
         pieces[-1] += line
@@ -34,7 +34,7 @@ def split_blocks(text: str) -> list[str]:
 
 
 def _lines(text: str) -> Iterator[tuple[str, str]]:
-    """Yield each line with what it is: 'block', 'row' of a table, or 'gap'."""
+    """Yield each line with its kind: 'block', 'row' of a table, or 'gap'."""
     fenced = False
     for line in text.splitlines(keepends=True):
         if FENCE.match(line):
@@ -47,7 +47,7 @@ def _lines(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _with_line_ends_between(pieces: list[str]) -> Iterator[str]:
-    """Yield the pieces, the last line end of each block moved to what follows it."""
+    """Yield the pieces, with the last line ends of each block moved to the piece after it."""
     moved = ''
     for index, piece in enumerate(pieces):
         if index % 2 == 0:
@@ -62,22 +62,22 @@ def _with_line_ends_between(pieces: list[str]) -> Iterator[str]:
 
 
 def has_words(block: str) -> bool:
-    """Whether a block says something to translate: code, formulas and addresses do not."""
+    """Whether a block has words to translate; code, formulas and addresses do not count."""
     return bool(_WORD.search(_NO_WORDS.sub(' ', block)))
 
 
 _ELEMENT = re.compile(r'<(h[1-6]|p|td|th|li|title|caption)\b[^>]*>(.+?)(?=</\1>)')
-"""An element of a page that stands in one line; its second group is what it says."""
+"""An element of an HTML page within one line; its second group is its text."""
 _LANGUAGE = re.compile(r'(<html lang=)"[^"]*"')
 
 
 def translatable_html(page: str) -> list[str]:
-    """Return what the elements of an HTML page say, in order."""
+    """Return the texts of an HTML page's elements, in order."""
     return [text for _, text in _ELEMENT.findall(page) if has_words(text)]
 
 
 def translate_html(page: str, translations: Mapping[str, str], language: str) -> str:
-    """Return an HTML page with each text that has one replaced by its translation."""
+    """Return an HTML page with each text replaced by its translation, if there is one."""
     code = language.replace('_', '-')
     page = _LANGUAGE.sub(rf'\1"{code}"', page)
     return _ELEMENT.sub(
@@ -87,17 +87,17 @@ def translate_html(page: str, translations: Mapping[str, str], language: str) ->
 
 
 def without_mark_scheme(text: str) -> str:
-    """Return a text without what only instructors read of it."""
+    """Return a text without the mark schemes, which only instructors read."""
     return _MARK_SCHEME.sub('', text)
 
 
 def translatable(text: str) -> list[str]:
-    """Return the blocks of a text that say something, in order."""
+    """Return the blocks of a text that have words, in order."""
     return [block for block in split_blocks(text)[1::2] if has_words(block)]
 
 
 def translate_blocks(text: str, translations: Mapping[str, str]) -> str:
-    """Return a text with each block that has one replaced by its translation."""
+    """Return a text with each block replaced by its translation, if there is one."""
     pieces = split_blocks(text)
     pieces[1::2] = [translations.get(block, block) for block in pieces[1::2]]
     return ''.join(pieces)

@@ -1,4 +1,4 @@
-"""Make the students' zip: what is on a list, nothing else, and nothing of it stale or telling."""
+"""Make the students' zip: only files of a fixed list, all up to date, none with an answer."""
 
 import tempfile
 from collections.abc import Iterator
@@ -21,17 +21,18 @@ from grader.common.files import write_whole
 from grader.course import Course
 
 FOLDER = 'my_robot_basics_course'
-"""What the zip unpacks to."""
+"""The folder that the zip unpacks to."""
 README = 'students.md'
-"""In solutions/, beside the lessons: the bundle's README.md."""
+"""In solutions/, beside the lessons: it becomes the bundle's README.md."""
 AS_THEY_ARE = ('course', 'environment.txt', 'LICENSE', 'launcher/verbs.txt', 'launcher/words.sh')
 LAUNCHER = 'launcher'
-"""What `course` runs; of it, the modules and what stands above."""
+"""The folder of modules that `course` runs; with the files of it that are listed above."""
 PINS = 'environment.txt'
 OTHERS = '# --- what only the whole course needs'
-"""How the line of environment.txt begins at which a student's ends (.ci/pin.py writes it)."""
+"""The beginning of the line in environment.txt before which a student's part ends; .ci/pin.py
+writes it."""
 SETTINGS = ('.jupyterlab/overrides.json', '.jupyterlab/page_config.json')
-"""What `./course lab` shows JupyterLab."""
+"""The settings that `./course lab` gives JupyterLab."""
 PACKAGE = 'my_robot_basics'
 IN_PACKAGE: tuple[str, ...] = (
     'package.xml',
@@ -47,7 +48,7 @@ IN_PACKAGE += (
     'my_robot_basics/*.bash',
 )
 IN_PACKAGE += ('my_robot_basics/validate/labextension/*.js*',)
-"""What a package consists of; `*` stands for folders, too."""
+"""The files of a package; `*` matches `/`, too."""
 INTERFACES = 'arm_interfaces'
 IN_INTERFACES: tuple[str, ...] = ('package.xml', 'CMakeLists.txt', 'srv/*.srv', 'action/*.action')
 IN_INTERFACES += ('wheel/*.py', 'wheel/abi3.h', 'wheel/*.whl')
@@ -61,17 +62,17 @@ class Bundle:
     """A zip that was made."""
 
     files: tuple[str, ...]
-    """Their paths in it."""
+    """Their paths in the zip."""
     bytes: int
     left_out: tuple[str, ...]
-    """Files in notebooks/ that are no lesson's."""
+    """Files in notebooks/ that do not belong to a lesson."""
 
 
 def bundle(course: Course, target: Path) -> Bundle:
     """Write the zip; the same files give the same bytes.
 
-    Raises CourseError, and writes nothing, where the target can't be written, or something is
-    missing or stale, is not on the list, or holds an answer or a hidden test.
+    Raises CourseError, and writes nothing, if the target can't be written, or if a file is
+    missing, stale, not on the list, or contains an answer or a hidden test.
     """
     _check_target(target)
     if not (course.root / 'notebooks').is_dir():
@@ -84,7 +85,7 @@ def bundle(course: Course, target: Path) -> Bundle:
     if faults:
         raise CourseError('no bundle was made: ' + '; '.join(faults))
     packed = zipped(files, EXECUTABLE)
-    _check_target(target)  # what was read has made gradebook/, where there was none
+    _check_target(target)  # checked again: reading may have created gradebook/
     target.parent.mkdir(parents=True, exist_ok=True)
     write_whole(target, packed)
     released = {f'notebooks/{path}' for path in files_in(course.root / 'notebooks')}
@@ -93,7 +94,7 @@ def bundle(course: Course, target: Path) -> Bundle:
 
 
 def _check_target(target: Path) -> None:
-    """See that a file can be written there, before what takes long. Raises CourseError."""
+    """Check early that a file can be written there. Raises CourseError."""
     if target.is_dir():
         raise CourseError(
             f'no bundle was made: {target} is a folder; expected the file to write: '
@@ -111,9 +112,9 @@ def _check_target(target: Path) -> None:
 
 
 def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
-    """Yield each file's path in the zip and its content; add to `faults` what is not as it should.
+    """Yield each file's path in the zip and its content; append what is wrong to `faults`.
 
-    What is written is what was read here once, and what is checked.
+    Each file is read only once, so that the content checked is the content written.
     """
     for path in _paths(course, faults):
         file = course.root / path
@@ -135,7 +136,7 @@ def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
 
 
 def _paths(course: Course, faults: list[str]) -> Iterator[str]:
-    """Yield the paths of all that students get, from the course's root."""
+    """Yield the paths of all files that students get, relative to the course's root."""
     yield from (*AS_THEY_ARE, *SETTINGS, f'solutions/{README}')
     modules = [path for path in files_in(course.root / LAUNCHER) if path.suffix == '.py']
     yield from (f'{LAUNCHER}/{path}' for path in modules)

@@ -1,7 +1,7 @@
 """Find the sentences in code that people read: the templates of its string literals.
 
-`f'no message in {seconds:g} s'` is the template `no message in {seconds} s`. What may stand in a
-place, when the code chooses between two words, is found by itself.
+`f'no message in {seconds:g} s'` is the template `no message in {seconds} s`. If the code chooses
+between two words for a placeholder, the words are found separately.
 """
 
 import ast
@@ -21,23 +21,23 @@ _NOISE = re.compile(
 _NOT_READ = {'TypeError', 'ValueError', 'KeyError', 'AttributeError', 'RuntimeError', 'compile'}
 _NOT_READ |= {'expect_names', 'expect_definitions'}
 _NOT_READ |= {'AssertionError', 'startswith', 'endswith'}
-"""What mistakes in our own code raise; patterns; lines of ROS's interface definitions; what is
-looked for in a text of others."""
+"""Functions and exceptions whose texts are not translated: errors in our own code, patterns, lines
+of ROS interface definitions, and texts to search for."""
 _CODE = {'code', 'usage', 'prog', 'pattern'}
-"""Arguments that are shown as they are, because they are typed; patterns are shown to nobody."""
+"""Arguments that are not translated: users type them, or, as patterns, never see them."""
 _NO_WORDS = {'true', 'false', 'markdown', 'demo', 'setup', 'free'}
-"""Words of Python, ROS and nbformat, between which code chooses; nobody reads them."""
+"""Words of Python, ROS and nbformat that code chooses between; they are not shown."""
 
 _WORD = re.compile(r'[^\W\d_A-Z][\w, ]+')
 _TOLD = {'expected', 'seen', 'hint', 'cause'}
-"""What a check says when it fails."""
+"""Arguments of a failing check's message."""
 
 
 def messages_in(source: str, *, title: bool = False) -> list[str]:
     """Return the templates of a module's or cell's sentences, in order, each once.
 
-    With `title`, the first lines of its docstring and of its functions' are: what a check and the
-    parts of an experiment are called.
+    With `title`, the first lines of its docstring and its functions' docstrings are included: the
+    titles of a check and of an experiment's parts.
     """
     tree = ast.parse(source)
     found = [_without_note(text) for text in _visit(tree) if not _NOISE.search(text)]
@@ -51,7 +51,7 @@ def messages_in(source: str, *, title: bool = False) -> list[str]:
 
 
 def described_in(source: str) -> list[str]:
-    """Return the templates of what a module marks by gettext_noop: parts of alternative texts."""
+    """Return the templates that a module marks by gettext_noop: parts of alternative texts."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
     marked = [call.args[0] for call in calls if _called(call) == 'gettext_noop']
     marked.sort(key=lambda text: (text.lineno, text.col_offset))
@@ -59,14 +59,14 @@ def described_in(source: str) -> list[str]:
 
 
 def marked_in(source: str, callers: Collection[str]) -> list[str]:
-    """Return the texts that a module gives to a function of one of these names, in order."""
+    """Return the texts that a module passes to a function of one of these names, in order."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
     first = [call.args[0] for call in calls if call.args and _called(call) in callers]
     return [str(text.value) for text in first if isinstance(text, ast.Constant)]
 
 
 def _without_note(text: str) -> str:
-    """Return a text without the mark of a note, which nobody is shown."""
+    """Return a text without the prefix of a note, which is not shown."""
     rest = text.removeprefix('note: ')
     return rest if _WORDS.search(rest) else text
 
@@ -90,10 +90,10 @@ def _visit(node: ast.AST) -> Iterator[str]:
 
 
 def _told(node: ast.AST) -> Iterator[str]:
-    """Yield single words that are told by themselves.
+    """Yield single words that are shown.
 
-    Those between which the code chooses, but not the s of a plural; and what a check says that it
-    expected or saw.
+    They are those that code chooses between, and what a check expected or saw. A word needs
+    several letters, so the s of a plural is left out.
     """
     if isinstance(node, ast.IfExp):
         yield from _words_of(node)
@@ -131,7 +131,7 @@ def _is_text(node: ast.AST) -> bool:
 
 
 def _template(node: ast.AST) -> tuple[str, list[ast.AST]]:
-    """Return a text with a name for each place, and the expressions that stand there."""
+    """Return a text with a name for each placeholder, and the expressions of the placeholders."""
     names: list[str] = []
     places: list[ast.AST] = []
 
@@ -158,7 +158,7 @@ def _template(node: ast.AST) -> tuple[str, list[ast.AST]]:
 
 
 def _name(expression: ast.AST) -> str:
-    """Return what to call a place: by the variable, attribute or function that stands there."""
+    """Return the name of a placeholder: its variable, attribute or function."""
     if isinstance(expression, ast.Call):
         return _called(expression).strip('_') or 'value'
     if isinstance(expression, ast.Subscript):

@@ -1,4 +1,4 @@
-"""The rows of the contents page: what a lesson, or a quiz, says of itself in its first cell."""
+"""The rows of the contents page: what the first cell of a lesson or quiz says about it."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -11,11 +11,11 @@ from my_robot_basics.validate.titles import checks_something
 from nbformat import NotebookNode
 
 JOINED = '{abilities}; {ability}'
-"""How the abilities of a lesson are put one behind the other."""
+"""How the abilities of a lesson are joined."""
 
 
 def row(path: str, lesson: NotebookNode, put: Callable[[str], str]) -> str:
-    """Return the row of a notebook, with a link; `put` puts a text in the page's language."""
+    """Return the row of a notebook, with a link; `put` translates a text."""
     opening = lesson.cells[0].source
     exercises = ', '.join(f'`{name}`' for name in exercises_of(lesson))
     link = f'[{title_of(lesson)}]({path})'
@@ -25,7 +25,7 @@ def row(path: str, lesson: NotebookNode, put: Callable[[str], str]) -> str:
 
 
 def minutes_of(lesson: NotebookNode) -> float:
-    """Return how long a lesson takes, as its first cell says; 0 where it does not."""
+    """Return how long a lesson takes, as its first cell says; 0 if it does not."""
     return float(_needs(lesson.cells[0].source)[1] or 0)
 
 
@@ -41,20 +41,20 @@ def exercises_of(lesson: NotebookNode) -> list[str]:
 
 
 def progress_row(name: str, lesson: NotebookNode) -> dict:
-    """Return a lesson's row in the list of a student's progress: what checks each exercise."""
+    """Return a lesson's row in the list of a student's progress: how each exercise is checked."""
     kinds = dict.fromkeys(exercises_of(lesson), 'by hand')
     for exercise in find_exercises(lesson):
         checks = [lesson.cells[i].source for i in exercise.grades]
         if checks:
             can_run = any(checks_something(visible(check)) for check in checks)
             kinds[exercise.name] = 'here' if can_run else 'at grading'
-    # a list: nbformat sorts the keys of what it writes
+    # a list, because nbformat sorts the keys of objects that it writes
     exercises = [{'name': each, 'checked': kind} for each, kind in kinds.items()]
     return {'lesson': name, 'title': title_of(lesson), 'exercises': exercises}
 
 
 def one_behind_the_other(sentences: Iterable[str]) -> str:
-    """Return sentences of one paragraph: there is no space behind a Chinese full stop."""
+    """Join sentences to a paragraph: after a Chinese full stop there is no space."""
     return ' '.join(sentences).replace('。 ', '。')
 
 
@@ -66,9 +66,9 @@ def _joined(abilities: Iterable[str], pattern: str) -> str:
 
 
 def _needs(opening: str) -> tuple[str, str]:
-    """Return what a lesson needs before it, and its minutes, as its first cell says; or blanks.
+    """Return what a lesson requires, and its minutes, as its first cell says; or two blanks.
 
-    It is the row of a table that ends with a number in words, '| about 35 minutes |', in any
+    It is the row of a table that ends with a number and words, '| about 35 minutes |', in any
     language.
     """
     found = re.search(r'^\| (.+) \| [^\d|\n]*(\d+)[^\d|\n]+ \|$', opening, re.M)
@@ -76,6 +76,6 @@ def _needs(opening: str) -> tuple[str, str]:
 
 
 def _abilities(opening: str) -> list[str]:
-    """Return the items of a lesson's numbered list, each in one line that fits into a table."""
+    """Return the items of a lesson's numbered list, each as one line for a table cell."""
     items = re.findall(r'^\d+\. (.+(?:\n[^\d\n|].*)*)', opening, re.MULTILINE)
     return [' '.join(item.split()).rstrip(',.;，。；').replace('|', r'\|') for item in items]

@@ -1,7 +1,7 @@
-"""Store what demonstrations show once, so that a changed sentence is a small diff.
+"""Store the outputs of demonstrations in one place, so that a changed sentence is a small diff.
 
-notebooks/ holds their pictures and measured values. solutions/ holds what nbval compares, in the
-form in which it compares it: without pixels, and without what differs from run to run.
+notebooks/ has their pictures and measured values. solutions/ has what nbval compares, in the form
+in which nbval compares it: without pixels, and without what differs from run to run.
 """
 
 import configparser
@@ -16,13 +16,13 @@ Sanitize = Callable[[str], str]
 
 PICTURE = 'image/png'
 DIFFERS = 'nbval-ignore-output'
-"""The tag of a cell whose outputs differ each time: none of them is stored in solutions/."""
+"""The tag of a cell whose outputs differ each time: solutions/ stores no outputs of it."""
 
 
 def read_sanitizer(path: Path) -> Sanitize:
-    """Return what replaces all that may differ between two runs, from nbval's file of rules."""
+    """Return a function that replaces what may differ between runs, by nbval's rules."""
     parser = configparser.RawConfigParser()
-    parser.read(path, encoding='utf-8')  # a course without that file has no such rules
+    parser.read(path, encoding='utf-8')  # without the file, there are no such rules
     rules = [
         (re.compile(section['regex']), section.get('replace', ''))
         for name, section in parser.items()
@@ -38,13 +38,13 @@ def read_sanitizer(path: Path) -> Sanitize:
 
 
 def clean_source(source: NotebookNode, sanitize: Sanitize) -> NotebookNode:
-    """Return an instructor's notebook as it is stored: its outputs as nbval compares them."""
+    """Return an instructor's notebook in its stored form: outputs as nbval compares them."""
     cleaned = copy.deepcopy(source)
     cleaned.metadata.pop('widgets', None)
-    if 'language_info' in cleaned.metadata:  # it names the version of the Python that ran it
+    if 'language_info' in cleaned.metadata:  # it has the version of the Python that ran it
         cleaned.metadata.language_info = NotebookNode(name=cleaned.metadata.language_info.name)
     for cell in cleaned.cells:
-        cell.metadata.pop('execution', None)  # times
+        cell.metadata.pop('execution', None)  # start and end times
         if cell.cell_type == 'code':
             cell.outputs = [] if _differs(cell) else _sanitized(cell.outputs, sanitize)
     return cleaned
@@ -53,11 +53,11 @@ def clean_source(source: NotebookNode, sanitize: Sanitize) -> NotebookNode:
 def keep_outputs(
     built: NotebookNode, released: NotebookNode, sanitize: Sanitize, *, fresh: bool = False
 ) -> list[str]:
-    """Give the demonstrations of a new release the outputs of the last one that still hold.
+    """Copy outputs of the last release into a new one, if they are still valid.
 
-    An output still holds where nbval would call the new one the same. Where the code has changed
-    and was run since, or with `fresh` wherever it was run, the new outputs are taken. Returns
-    the cells whose pictures are from before their code changed, or missing.
+    They are valid if nbval would accept the new outputs as the same. If a cell's code has changed
+    and the cell was run again, or, with `fresh`, if it was run, the new outputs are used. Returns
+    the cells whose pictures are missing, or older than the last change of their code.
     """
     before = {cell.id: cell for cell in released.cells}
     doubtful = []
@@ -70,7 +70,7 @@ def keep_outputs(
             cell.outputs = old.get('outputs', [])
             doubtful += [cell.id] * (changed and any(map(_has_picture, cell.outputs)))
         for output in filter(_is_in_page, cell.outputs):
-            output.data.pop(PICTURE, None)  # HTML shows the same, and has words for it
+            output.data.pop(PICTURE, None)  # the HTML has the same picture, with a description
     return doubtful
 
 
@@ -82,7 +82,7 @@ def _still_hold(cell: NotebookNode, old: NotebookNode, sanitize: Sanitize) -> bo
 
 
 def _words(outputs: list[NotebookNode], sanitize: Sanitize) -> Iterator[str]:
-    """Yield what each output says, pictures by their words."""
+    """Yield the text of each output; for a picture, its description."""
     for output in outputs:
         data = output.get('data', {})
         said = sanitize(output.get('text') or data.get('text/plain') or data.get('text/html', ''))
@@ -91,7 +91,7 @@ def _words(outputs: list[NotebookNode], sanitize: Sanitize) -> Iterator[str]:
 
 
 def _was_run(cell: NotebookNode, sanitize: Sanitize) -> bool:
-    """Whether a cell's outputs are those of a run, rather than those stored in solutions/."""
+    """Whether a cell's outputs come from a run, not from the stored form in solutions/."""
     stored = [] if _differs(cell) else _sanitized(cell.outputs, sanitize)
     return cell.outputs != stored
 
@@ -103,7 +103,7 @@ def _sanitized(outputs: list[NotebookNode], sanitize: Sanitize) -> list[Notebook
             output.text = sanitize(output.text)
         data = output.get('data', {})
         if data.pop(PICTURE, None):
-            output.metadata.setdefault(PICTURE, NotebookNode())  # there was one
+            output.metadata.setdefault(PICTURE, NotebookNode())  # marks that there was one
         for mime, text in data.items():
             data[mime] = sanitize(text) if isinstance(text, str) else text
     return cleaned

@@ -1,4 +1,4 @@
-"""Write the editions: what is built in English, once more in each other language."""
+"""Write the editions: the English release, translated into each other language."""
 
 import shutil
 from collections.abc import Callable, Iterable
@@ -21,10 +21,10 @@ def write_editions(
     metadata: dict,
     say: Callable[[str], None] = lambda line: None,
 ) -> None:
-    """Write the lessons of those names, and the pages, into a folder of `built` for each language.
+    """Write these lessons, and the pages, into a folder of `built` for each language.
 
-    `metadata` is that of the page of contents. `say` gets a line for each lesson of which
-    something stays English.
+    `metadata` is that of the contents page. `say` gets a line for each lesson that is not
+    completely translated.
     """
     for edition in editions(course):
         _write_lessons(edition, names, built, say)
@@ -39,7 +39,7 @@ def _write_lessons(
     built: Path,
     say: Callable[[str], None],
 ) -> None:
-    """Write the lessons of those names, as they are built in English, in an edition's folder."""
+    """Write these lessons, translated from the built English ones, into an edition's folder."""
     for name in names:
         folder = built / edition.language / name
         shutil.copytree(built / name, folder)

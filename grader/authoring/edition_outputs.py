@@ -1,8 +1,8 @@
-"""What a lesson shows before it is run, in an edition's language: the course's own words alone.
+"""Translate the course's own words in the outputs that a lesson shows before it is run.
 
-The outputs are those of the English release. Run again, a cell of an edition shows the course's
-displays, sentences and words for pictures in its language, and what the lesson's code or `ros2`
-prints in English.
+The outputs are those of the English release. If a cell of an edition is run again, displays,
+sentences and descriptions of pictures by the course are in its language; what the lesson's code
+or `ros2` prints is in English.
 """
 
 import html
@@ -20,33 +20,33 @@ from my_robot_basics.language.templates import LETTERS, Template
 from nbformat import NotebookNode
 
 PANEL, DOCTOR = '<pre style="margin:0;padding-left:8px;', '<div style="font-size:13px;line-height'
-"""How a node's panel begins, and what the topic doctor says."""
+"""How the HTML of a node's panel and of the topic doctor's findings begins."""
 PICTURE = '<img alt="'
-"""How a picture begins."""
+"""How the HTML of a picture begins."""
 PARTS = ('live', 'doctor', 'checks')
-"""The catalogues of what a cell may print."""
+"""The catalogues of texts that a cell may print."""
 COLON = '{one}: {other}'
-"""How a sentence ends before a line of code."""
+"""A sentence that ends with a colon, before a line of code."""
 BEGINS = 4
-"""Letters with which a sentence of the course begins; with fewer, it may be anybody's."""
+"""Letters before the first placeholder: with fewer, any text could match the sentence."""
 
 _TEXT = re.compile(r'(<pre.*?</pre>)|(?<=>)([^<>]*[^\W\d_][^<>]*)', re.DOTALL)
-"""Code in a page, which stays; and a text between two tags."""
+"""Code in a page, which is not translated; or a text between two tags."""
 _GOES_ON = re.compile(r'(?<=^  )\w+ goes on$')
 """What follows an exception in a panel."""
 _COLUMNS = re.compile(r'(.*\s{2})(\S.*)|(\w[\w ]*: )(.+)')
-"""A line whose words begin in its second column, or behind what the lesson's code says."""
+"""A line with a sentence in its second column, or after a prefix of the lesson's code."""
 
 
 @dataclass(frozen=True)
 class OutputWords:
-    """The course's own words in the outputs of a language's edition."""
+    """Translates the course's own words in outputs, for one language."""
 
     locale: Path
     language: str
 
     def translate(self, output: NotebookNode) -> None:
-        """Put an output's words, where they are the course's, into this language."""
+        """Translate an output's words, if they are the course's, in place."""
         if output.output_type == 'stream':
             output.text = _by_line(output.text, self._printed)
         data = output.get('data', {})
@@ -73,7 +73,7 @@ class OutputWords:
 
     @cached_property
     def _begin(self) -> list[Template]:
-        """The sentences with places that begin with words."""
+        """The sentences with placeholders that begin with words."""
         known: Mapping[str, str] = self._sentences.translations
         made = (Template.of(english, translation) for english, translation in known.items())
         return [t for t in made if t.places and len(LETTERS.findall(t.literals[0])) >= BEGINS]
@@ -82,7 +82,7 @@ class OutputWords:
         return self._sentences.translate(text)
 
     def _told(self, text: str) -> str:
-        """Translate a text of the topic doctor's page."""
+        """Translate a text in the topic doctor's HTML."""
         said = html.unescape(text.strip())
         shown = self._say(said.removesuffix(':'))
         if said.endswith(':'):
@@ -91,7 +91,7 @@ class OutputWords:
         return text.replace(text.strip(), html.escape(shown))
 
     def _picture(self, output: NotebookNode) -> None:
-        """Translate a picture's alternative text, in each form in which the output has it."""
+        """Translate a picture's alternative text in all places of the output."""
         data = output.data
         data['text/plain'] = picture_in(self.language, data['text/plain'], self.locale)
         words = in_one_line(self.language, data['text/plain'], self.locale)
@@ -102,14 +102,14 @@ class OutputWords:
                 about['alt'] = words
 
     def _panel(self, text: str) -> str:
-        """Translate the state of a node, and what follows an exception; a log line stays."""
+        """Translate the state of a node, and what follows an exception, but not log lines."""
         first, *lines = text.split('\n')
         title, colon, state = first.partition(': ')
         lines = [_GOES_ON.sub(lambda found: self._say(found[0]), line) for line in lines]
         return '\n'.join([f'{title}{colon}{self._say(state)}', *lines])
 
     def _printed(self, line: str) -> str:
-        """Translate a line that the course printed, or what it printed in one."""
+        """Translate a printed line, or the part of it that is a sentence of the course."""
         if self._is_ours(line):
             return self._say(line)
         if columns := _COLUMNS.fullmatch(line):
@@ -121,7 +121,7 @@ class OutputWords:
         return line
 
     def _is_ours(self, text: str) -> bool:
-        """Whether it is a sentence of the course, or made from one without a foreign phrase."""
+        """Whether it is a sentence of the course, or one with known words in its placeholders."""
         if text in self._sentences.translations:
             return ' ' in text
         return any(all(map(self._is_said, found.values())) for found in self._fits(text))

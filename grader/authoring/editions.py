@@ -1,8 +1,8 @@
 """The editions of the course: the same release in another language, in notebooks/LANGUAGE/.
 
-Only what people read is translated, block by block, and what the course itself says in an output.
-Code, ids and marks are those of the English release, so an answer from any edition is graded by
-the same source. A block without a translation stays English.
+Only what people read is translated, block by block, and the course's own sentences in outputs.
+Code, ids and metadata are those of the English release, so an answer from any edition is graded
+with the same source. A block without a translation stays English.
 """
 
 from collections.abc import Mapping
@@ -29,17 +29,17 @@ from grader.course import Course
 
 @dataclass(frozen=True)
 class Edition:
-    """A language of the course, and what was translated into it."""
+    """A language of the course, with its translations."""
 
     language: str = ENGLISH
     locale: Path | None = None
-    """The folder of the catalogues; none for English."""
+    """The folder of the catalogues; None for English."""
     _parts: dict[str, dict[str, str]] = field(default_factory=dict, compare=False)
 
     def translations(self, part: str) -> Mapping[str, str]:
-        """Return the translated blocks of a lesson or a page, by their English.
+        """Return the translated blocks of a lesson or a page, by their English text.
 
-        Raises CourseError where the catalogue is damaged.
+        Raises CourseError if the catalogue is damaged.
         """
         if self.locale is None:
             return {}
@@ -52,11 +52,11 @@ class Edition:
         return self._parts[part]
 
     def text(self, part: str, english: str) -> str:
-        """Return a text of a page in this language."""
+        """Return the text of a page, translated."""
         return translate_blocks(english, self.translations(part))
 
     def notebook(self, name: str, english: NotebookNode) -> NotebookNode:
-        """Return a lesson in this language: its text cells, and the course's words in outputs."""
+        """Return a lesson, translated: its text cells, and the course's own words in outputs."""
         notebook = nbformat.from_dict(english)
         if self.locale is None:
             return notebook
@@ -71,11 +71,11 @@ class Edition:
 
 
 def editions(course: Course) -> list[Edition]:
-    """Return the editions beside the English one, sorted by language."""
+    """Return the editions other than English, sorted by language."""
     locale = course.root / 'locale'
     return [Edition(language, locale) for language in languages(locale)]
 
 
 def is_translated(cell: NotebookNode) -> bool:
-    """Whether a cell is text of the lesson: what students write, and its stub, are theirs."""
+    """Whether a cell is translated: a text of the lesson, not a student's text or its stub."""
     return cell.cell_type == 'markdown' and role(cell) == 'text'

@@ -1,4 +1,4 @@
-"""Refuse a lesson in which an answer or a check is part of no exercise: nothing could grade it."""
+"""Refuse a lesson with an answer or a check outside of any exercise: it would not be graded."""
 
 from collections.abc import Iterator
 
@@ -11,12 +11,12 @@ from grader.common.errors import CourseError
 
 
 class RequireExercises(Preprocessor):
-    """See that each answer that is graded by checks, and each check, is part of an exercise."""
+    """Check that each check, and each answer that is graded by checks, is part of an exercise."""
 
     enabled = True
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Change nothing. Raises CourseError that names the cells and says what to add."""
+        """Return everything unchanged. Raises CourseError with the cells and what to add."""
         if faults := [*outside_of_exercises(nb)]:
             raise CourseError('; '.join(faults))
         return nb, resources
@@ -25,14 +25,14 @@ class RequireExercises(Preprocessor):
 def outside_of_exercises(notebook: NotebookNode) -> Iterator[str]:
     """Yield what to add for each answer without its reset cell, and each check without an answer.
 
-    An exercise begins at its `<id>-reset` cell: a check behind an answer without one would not be
-    run, or be judged with the answer before.
+    An exercise begins with its `<id>-reset` cell. Without it, a check would not be run, or would
+    be run with the previous answer.
     """
     exercises = find_exercises(notebook)
     with_reset = {exercise.name for exercise in exercises}
     checked = {index for exercise in exercises for index in exercise.grades}
     last = None
-    """The last cell that should begin an exercise, or be its answer."""
+    """The last answer cell; None after a reset cell."""
     for index, cell in enumerate(notebook.cells):
         name = grade_id(cell)
         if cell.cell_type != 'code':

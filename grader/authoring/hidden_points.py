@@ -1,4 +1,4 @@
-"""Write into a released notebook what *Validate* must know of it and its cells no longer show."""
+"""Record in a released notebook what *Validate* needs and its cells no longer show."""
 
 from my_robot_basics.feedback.hidden_source import visible
 from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, grade_id, roles
@@ -8,12 +8,12 @@ from nbformat import NotebookNode
 
 
 class MarkHidden(Preprocessor):
-    """Record each cell's role, and which checks have a hidden part: before that is taken out."""
+    """Record each cell's role, and which checks have a hidden part, before it is removed."""
 
     enabled = True
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Begin the record in the notebook's metadata; it tells nothing of what is hidden."""
+        """Begin the record in the notebook's metadata; it has nothing of the hidden content."""
         record = {}
         for cell, role in zip(nb.cells, roles(nb), strict=True):
             if role != 'text':
@@ -25,7 +25,7 @@ class MarkHidden(Preprocessor):
 
 
 class MarkSources(Preprocessor):
-    """Record what each cell says when it is given out, so that a change is seen."""
+    """Record a hash of each cell's released source, so that a change can be detected."""
 
     enabled = True
 
@@ -40,5 +40,5 @@ class MarkSources(Preprocessor):
 
 
 def _key(cell: NotebookNode) -> str:
-    """Return what the record calls a cell: the id that an author gave it, or JupyterLab did."""
+    """Return a cell's key in the record: its grade id, or else the cell id."""
     return grade_id(cell) or cell.id

@@ -1,4 +1,4 @@
-"""The pages beside the lessons: the contents, made from them, the core terms, what comes next."""
+"""The pages beside the lessons: the contents page, the core terms, and what comes next."""
 
 from functools import partial
 from pathlib import Path
@@ -23,7 +23,7 @@ from grader.course import Course
 
 INDEX, TERMS, NEXT = 'index.ipynb', 'terms.md', 'what_next.md'
 COPIED = (TERMS, NEXT)
-"""Pages that lie in solutions/ as students get them."""
+"""Pages in solutions/ that students get unchanged."""
 
 WELCOME = """\
 # ROS 2 on a two-link arm
@@ -50,15 +50,15 @@ TO_THE_PAGES = {
 HEADER = '| lesson | you will be able to | you need | minutes | exercises | points |'
 TOTAL = 'all together'
 TEXTS = (WELCOME, HEADER, TOTAL, JOINED, HOW_IT_WORKS, *TO_THE_PAGES.values())
-"""All that the page of contents says by itself."""
+"""All texts of the contents page itself."""
 PART = 'index'
-"""What is translated of it, as a part of the course."""
+"""The name of its catalogue."""
 
 
 def write_pages(
     course: Course, folder: Path, *, metadata: dict, edition: Edition | None = None
 ) -> None:
-    """Write the index notebook with that metadata, and the other pages that there are."""
+    """Write the contents page with that metadata, and the other pages that exist."""
     edition = edition or Edition()
     for page in copied_pages(course):
         english = (course.root / 'solutions' / page).read_text(encoding='utf-8')
@@ -73,12 +73,12 @@ def write_pages(
 
 
 def copied_pages(course: Course) -> list[str]:
-    """Return the names of those pages in solutions/ that students get as they are."""
+    """Return the names of the pages in solutions/ that students get unchanged."""
     return [page for page in COPIED if (course.root / 'solutions' / page).exists()]
 
 
 def make_index(course: Course, edition: Edition | None = None) -> NotebookNode:
-    """Return the table of contents as a notebook: each lesson, what it teaches, its points."""
+    """Return the contents page as a notebook: each lesson, what it teaches, its points."""
     edition = edition or Edition()
     lessons = {name: edition.notebook(name, course.source(name)) for name in course.assignments()}
     tests = {name: edition.notebook(Path(name).stem, q) for name, q in quizzes(course).items()}
@@ -108,7 +108,7 @@ def make_index(course: Course, edition: Edition | None = None) -> NotebookNode:
 
 
 def _to_other_editions(course: Course, edition: Edition) -> list[str]:
-    """Return a line with a link to the contents in each other language, named in that language."""
+    """Return a line of links to the contents page in the other languages, in their own names."""
     known = [Edition(), *editions(course)]
     top = '' if edition.language == ENGLISH else '../'
     links = [

@@ -1,4 +1,4 @@
-"""Find answers and hidden tests in what students are given."""
+"""Find answers and hidden tests in files that students get."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -9,18 +9,18 @@ from nbformat import NotebookNode
 from grader.course import Course
 
 BROKEN = '### BROKEN: '
-"""Begins a line of code that is released broken, for students to fix (see release.py)."""
+"""The prefix of a line of code that is released broken, for students to fix (see release.py)."""
 MARKS = (
     *('BEGIN SOLUTION', 'END SOLUTION', 'BEGIN HIDDEN TESTS', 'END HIDDEN TESTS'),
     *('BEGIN MARK SCHEME', 'END MARK SCHEME'),
     BROKEN.strip(),
 )
 COMMON_PHRASE = 25
-"""Shorter lines, such as `for _ in range(3):`, stand in any program."""
+"""Lines that are not longer than this, such as `for _ in range(3):`, occur in any program."""
 
 
 def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
-    """Yield each answer and hidden test that can be read in an assignment's released files."""
+    """Yield a message for each answer and hidden test in an assignment's released files."""
     secret = _secrets(course.source(assignment).cells)
     for path in files_in(released / assignment):
         file = released / assignment / path
@@ -34,11 +34,11 @@ def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
 
 
 def leaks_beside(course: Course, files: Mapping[str, bytes]) -> Iterator[str]:
-    """Yield what students could learn from files that are no lesson: programs, texts, indexes.
+    """Yield a message for what other files reveal to students: programs, texts, indexes.
 
-    A program may have a line in common with an answer. Two of one assignment are no accident, and
-    neither is a line of a hidden test that is longer than a common phrase. A catalogue repeats
-    what many programs say: of a line that one of them has, it tells nothing.
+    A program may have one line in common with an answer by accident, but not two of one
+    assignment, and not a line of a hidden test that is longer than COMMON_PHRASE. A catalogue
+    repeats texts of programs: a line that a program has is ignored in it.
     """
     programs = '\n'.join(_text(name, files[name]) for name in files if name.endswith('.py'))
     for assignment in course.assignments():
@@ -59,13 +59,13 @@ def leaks_beside(course: Course, files: Mapping[str, bytes]) -> Iterator[str]:
 
 
 def files_in(folder: Path) -> list[Path]:
-    """Return the files in `folder`, relative to it, sorted; what editors hide there left out."""
+    """Return the files in `folder`, relative to it, sorted, without hidden files of editors."""
     found = (path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
     return sorted(p for p in found if not any(part.startswith('.') for part in p.parts))
 
 
 def _secrets(cells: Iterable[NotebookNode]) -> set[str]:
-    """Return the lines that must not be released, except what a lesson says openly."""
+    """Return the lines that must not be released, except those that a lesson shows openly."""
     secret = {line for cell in cells for line in _secret_lines(cell)}
     taught = {line for cell in cells for line in _open_lines(cell)}
     return {line for line in secret if not any(line in open_line for open_line in taught)}
@@ -85,13 +85,13 @@ def _secret_lines(cell: NotebookNode) -> Iterator[str]:
 
 
 def _open_lines(cell: NotebookNode) -> Iterator[str]:
-    """Yield the lines that everybody may read, stripped."""
+    """Yield the lines that students may read, stripped."""
     if not set(_secret_lines(cell)) or any(hidden for _, hidden in _marked_lines(cell)):
         yield from _revealing(line for line, hidden in _marked_lines(cell) if not hidden)
 
 
 def _marked_lines(cell: NotebookNode) -> Iterator[tuple[str, bool]]:
-    """Yield each line of a cell with whether it stands in a marked region."""
+    """Yield each line of a cell, and whether it is in a marked region."""
     hidden = False
     for line in cell.source.splitlines():
         if BROKEN in line:
@@ -103,12 +103,12 @@ def _marked_lines(cell: NotebookNode) -> Iterator[tuple[str, bool]]:
 
 
 def _revealing(lines: Iterable[str]) -> Iterator[str]:
-    """Yield what a line says; a bracket or a bare word says nothing."""
+    """Yield the stripped lines that reveal something; a bracket or a single word does not."""
     yield from (s for line in lines if len(s := line.strip()) > 5 and ' ' in s)
 
 
 def _text(name: str, content: bytes) -> str:
-    """Return all that can be read in a file; of a notebook, outputs and metadata included."""
+    """Return all text in a file; for a notebook, with outputs and metadata."""
     if not name.endswith('.ipynb'):
         return content.decode(errors='replace')
     return '\n'.join(_strings(nbformat.reads(content.decode(), as_version=4)))

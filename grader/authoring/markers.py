@@ -1,7 +1,7 @@
-"""Whether the lines between which nbgrader takes something out come in pairs, and in which cells.
+"""Check that the BEGIN and END lines of nbgrader's regions come in pairs, and in the right cells.
 
-nbgrader refuses such a lesson, too, and does not say which cell it means; an end without its
-beginning it overlooks.
+nbgrader refuses such a lesson, too, but does not name the cell, and it ignores an END without
+its BEGIN.
 """
 
 from collections.abc import Iterator
@@ -13,15 +13,15 @@ from nbformat import NotebookNode
 
 @dataclass(frozen=True)
 class _Region:
-    """Something that students must not see."""
+    """A kind of region that students must not see."""
 
     words: str
     last: str
-    """What its last line is, for an author."""
+    """How a message to the author names its last line."""
     kind: str = ''
-    """The cells that may have one, by nbgrader's name for them in their metadata."""
+    """The key of nbgrader's metadata that a cell needs to have such a region; '' for any cell."""
     type_there: str = ''
-    """What *Create Assignment* calls such a cell; '' where any cell may have one."""
+    """The type of such a cell in *Create Assignment*; '' for any cell."""
 
 
 REGIONS = (
@@ -32,7 +32,7 @@ REGIONS = (
 
 
 def marker_faults(notebook: NotebookNode) -> Iterator[str]:
-    """Yield which cell has a region without its end, or its beginning, and what to add."""
+    """Yield which cell has a region without its end or its beginning, and what to add."""
     for cell in notebook.cells:
         name = grade_id(cell) or cell.get('id', 'without an id')
         for region in REGIONS:
@@ -43,7 +43,7 @@ def marker_faults(notebook: NotebookNode) -> Iterator[str]:
 def _faults(cell: NotebookNode, region: _Region) -> Iterator[str]:
     begin, end = f'BEGIN {region.words}', f'END {region.words}'
     opened = 0
-    """The line where a region has begun and not ended; lines are counted from 1."""
+    """The line, from 1, where a region begins that has not ended yet; 0 if there is none."""
     for number, line in enumerate(cell.source.split('\n'), 1):
         if begin in line:
             if opened:

@@ -1,6 +1,6 @@
-"""Whether the graded cells of a lesson have what nbgrader wants to know of each.
+"""Check that the graded cells of a lesson have the metadata that nbgrader needs.
 
-nbgrader refuses such a lesson, too: as metadata that may be corrupted, without the cell.
+nbgrader refuses such a lesson, too, but only says that metadata may be corrupted, not where.
 """
 
 import ast
@@ -11,16 +11,16 @@ from my_robot_basics.validate.cells import role
 from nbformat import NotebookNode
 
 SCHEMA = 3
-"""The version of the metadata that nbgrader 0.9 reads and writes."""
+"""The schema version of the metadata that nbgrader 0.9 reads and writes."""
 _ID = re.compile(r'[a-zA-Z0-9_\-]+')
 _TYPES = ('grade', 'solution', 'locked', 'task')
-"""A cell with any of these has a type in Create Assignment."""
+"""Keys of which each true one gives a cell a type in Create Assignment."""
 _NEEDED = ('grade', 'solution', 'locked')
-"""What nbgrader looks for in its metadata of each cell, even of one that has no type."""
+"""Keys that nbgrader reads from its metadata of each cell, even if the cell has no type."""
 
 
 def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
-    """Yield what is wrong with each cell that nbgrader's metadata speak of, and what to do."""
+    """Yield what is wrong with each cell that has nbgrader metadata, and what to do."""
     ids = set()
     for number, cell in enumerate(notebook.cells, 1):
         if 'nbgrader' not in cell.metadata:

@@ -1,4 +1,4 @@
-"""The quizzes: notebooks beside the lessons, with questions that are checked by running."""
+"""The quizzes: notebooks beside the lessons, with questions that running a cell checks."""
 
 from pathlib import Path
 
@@ -7,17 +7,17 @@ from nbformat import NotebookNode, read
 from grader.course import Course
 
 QUIZZES = {'quiz_topics.ipynb': '07_common_errors', 'quiz_services.ipynb': ''}
-"""Each in solutions/, and behind which lesson it comes; '': behind the last one."""
+"""Quizzes in solutions/, with the lesson that each follows; '' for the last lesson."""
 
 
 def quizzes(course: Course) -> dict[str, NotebookNode]:
-    """Return those that there are, by their names, as they are given out: nothing was run."""
+    """Return the quizzes that exist, by name, as they are released: without outputs."""
     paths = [course.root / 'solutions' / name for name in QUIZZES]
     return {path.name: _read(path) for path in paths if path.exists()}
 
 
 def lesson_before(quiz: str, lessons: list[str]) -> str:
-    """Return behind which of the lessons a quiz comes."""
+    """Return the lesson that a quiz follows."""
     return QUIZZES[quiz] if QUIZZES[quiz] in lessons else lessons[-1]
 
 

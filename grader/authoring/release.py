@@ -1,6 +1,6 @@
-"""Make notebooks/ from solutions/: no answers, no hidden tests, but pictures of what is shown.
+"""Make notebooks/ from solutions/: without answers and hidden tests, with demonstration outputs.
 
-The pictures move: solutions/ is left with what nbval compares (see demo_outputs).
+The pictures move to notebooks/: solutions/ keeps only what nbval compares (see demo_outputs).
 """
 
 import shutil
@@ -35,14 +35,14 @@ def release(
 ) -> list[str]:
     """Release an assignment, or all of them; return the names of the files that changed.
 
-    What a demonstration showed in the last release stays where it still holds, unless
-    `fresh_outputs` asks for all that the notebooks in solutions/ show.
+    Outputs of demonstrations in the last release stay if they are still valid, unless
+    `fresh_outputs` asks for the outputs that the notebooks in solutions/ have. The contents page
+    is always made anew, and the pages are copied.
 
-    The index of all lessons is made anew in any case, and the page of terms copied. Everything is
-    built aside first and then put in place file by file: whatever fails, notebooks/ holds whole
-    files, and nothing is taken away. A notebook that somebody has worked in is copied to
-    gradebook/replaced/ before, and `say` gets a line for it. Raises CourseError when a source
-    can't be released.
+    Everything is built in a temporary folder, then each changed file is replaced atomically: if
+    something fails, notebooks/ has only complete files; no file is removed. A notebook that
+    somebody has worked in is first copied to gradebook/replaced/, and `say` gets a line for it.
+    Raises CourseError if a source can't be released.
     """
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, assignment, Path(folder))
@@ -66,7 +66,7 @@ def release(
 
 
 def stale_or_leaking(course: Course) -> list[str]:
-    """Say what is wrong with notebooks/: not what solutions/ gives today, or telling too much."""
+    """Return what is wrong with notebooks/: differences from solutions/, and leaks."""
     with tempfile.TemporaryDirectory() as folder:
         built = _build(course, '*', Path(folder))
         list(_keep_outputs(course, built))
@@ -93,7 +93,7 @@ def stale_or_leaking(course: Course) -> list[str]:
 
 
 def _build(course: Course, assignment: str, folder: Path) -> Path:
-    """Let nbgrader release into `folder`, without touching its database, and add the index."""
+    """Let nbgrader release into `folder`, without touching its database, and add the pages."""
     names = course.assignments() if assignment == '*' else [assignment]
     if not names:
         raise CourseError(f'there is no assignment in {course.root / "solutions"}')
@@ -110,7 +110,7 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
         raise CourseError(
             'nbgrader could not release ' + assignment + ': ' + ' '.join(said or [run.stderr])
         )
-    for name in names:  # our own packages lie beside the source, and are the answer
+    for name in names:  # a ROS package beside the source is the answer
         for package in course.packages(name):
             shutil.rmtree(folder / name / package, ignore_errors=True)
     write_pages(course, folder, metadata=METADATA)
@@ -118,7 +118,7 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
 
 
 def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterator[str]:
-    """Give built notebooks the outputs that still hold; name the cells that should be run."""
+    """Keep valid outputs in built notebooks; yield a message for each cell that should be run."""
     sanitize = sanitizer_of(course)
     for name in _names(course, built):
         path = built / name / f'{name}.ipynb'
@@ -134,7 +134,7 @@ def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterat
 
 
 def _leaks(course: Course, released: Path) -> list[str]:
-    """Return what tells an answer or a hidden test in the released lessons of any language."""
+    """Return messages on answers and hidden tests in the released lessons of all languages."""
     folders = [released, *(released / edition.language for edition in editions(course))]
     return [
         leak
@@ -145,22 +145,22 @@ def _leaks(course: Course, released: Path) -> list[str]:
 
 
 def last_release(course: Course, name: str) -> NotebookNode:
-    """Return the notebook that stands in notebooks/, or an empty one."""
+    """Return the notebook that is now in notebooks/, or an empty one."""
     try:
         return nbformat.read(course.release_path(name), as_version=4)
     except (OSError, ValueError, nbformat.ValidationError):
-        return nbformat.v4.new_notebook()  # whatever stands there, it is replaced
+        return nbformat.v4.new_notebook()  # a damaged file is replaced anyway
 
 
 def _cleaned_source(course: Course, name: str) -> str | None:
-    """Return a source as it should be stored; None where it is already."""
+    """Return a source in its stored form; None if it has that form already."""
     source = course.source(name)
     cleaned = clean_source(source, sanitizer_of(course))
     return None if cleaned == source else nbformat.writes(cleaned) + '\n'
 
 
 def sanitizer_of(course: Course) -> Sanitize:
-    """Return what nbval takes out of outputs before it compares them."""
+    """Return the function that normalises outputs before nbval compares them."""
     return read_sanitizer(course.root / 'solutions/nbval_sanitize.cfg')
 
 
@@ -169,7 +169,7 @@ def _source_name(name: str) -> str:
 
 
 def _keep_work(course: Course, changed: Sequence[Path]) -> Iterator[str]:
-    """Copy the notebooks that are about to be replaced and hold somebody's work; tell of each."""
+    """Copy notebooks that are about to be replaced if they contain work; yield a line for each."""
     released = {
         str(path): course.root / 'notebooks' / path for path in changed if path.suffix == '.ipynb'
     }
@@ -179,7 +179,7 @@ def _keep_work(course: Course, changed: Sequence[Path]) -> Iterator[str]:
 
 
 def _names(course: Course, built: Path) -> list[str]:
-    """Return the assignments that a folder holds, in the order of their names."""
+    """Return the assignments in a folder, sorted by name."""
     return [name for name in course.assignments() if (built / name).is_dir()]
 
 

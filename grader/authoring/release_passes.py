@@ -1,6 +1,7 @@
-"""What a source notebook goes through on its way to students: nbgrader's passes, and our own.
+"""The preprocessors that make a released notebook from its source: nbgrader's and our own.
 
-An answer is released as a stub; or as broken code, where students are to fix something. The lines
+An answer is released as a stub, or as broken code that students are to fix. The broken lines are
+comments right after the answer, and replace the stub:
 of that stand as comments right behind the answer, and take the stub's place:
 
     ### BEGIN SOLUTION
@@ -37,10 +38,10 @@ PASSES = (
     'grader.authoring.release_passes.LetRunAllGoOn',
     'nbgrader.preprocessors.CheckCellMetadata',
 )
-"""What happens to a source notebook, in order; up to SaveCells it is what the gradebook keeps."""
+"""The preprocessors in order; the result of those before SaveCells is stored in the gradebook."""
 
 CODE_STUB = {'python': '# YOUR CODE HERE'}
-"""What stands for an answer: it runs, so that the checks can say what is missing."""
+"""It replaces an answer. It can be run, so that the checks can say what is missing."""
 
 KERNELSPEC = {'display_name': 'Python 3 (ipykernel)', 'language': 'python', 'name': 'python3'}
 METADATA = {'kernelspec': KERNELSPEC, 'language_info': {'name': 'python'}}
@@ -48,7 +49,7 @@ CELL_METADATA = ('nbgrader', 'tags', 'deletable', 'editable')
 
 
 class TidyMetadata(Preprocessor):
-    """Keep the metadata that a lesson needs; drop what an editor or a kernel left behind."""
+    """Keep the metadata that a lesson needs; remove that of an editor or a kernel."""
 
     enabled = True
 
@@ -67,22 +68,22 @@ class TidyMetadata(Preprocessor):
 
 
 class ReleaseBroken(Preprocessor):
-    """Put broken code, where an answer has some, in the place of the stub."""
+    """Replace the stub by broken code, if an answer has some."""
 
     enabled = True
 
     def preprocess_cell(
         self, cell: NotebookNode, resources: dict, index: int
     ) -> tuple[NotebookNode, dict]:
-        """Uncomment the broken lines of one cell. Raises CourseError where they stand alone."""
+        """Uncomment the broken lines of one cell. Raises CourseError if they follow no answer."""
         cell.source = broken(cell.source)
         return cell, resources
 
 
 def broken(cleared: str) -> str:
-    """Return the source of an answer cell, cleared of its answer, with its broken lines as code.
+    """Return an answer cell's source, cleared of its answer, with its broken lines as code.
 
-    Raises CourseError when such lines are anywhere but right after an answer.
+    Raises CourseError if such lines are anywhere but right after an answer.
     """
     stub = re.escape(CODE_STUB['python'])
     after_stub = re.compile(rf'^ *{stub}\n((?: *{BROKEN}.*(?:\n|\Z))+)', re.MULTILINE)
@@ -96,10 +97,10 @@ def broken(cleared: str) -> str:
 
 
 class LetRunAllGoOn(Preprocessor):
-    """Tag the cells that check answers: where one fails, JupyterLab still runs the cells below.
+    """Tag the cells that check answers: if one fails, JupyterLab still runs the cells below.
 
-    Its error is still shown. nbgrader looks at outputs alone, and what we grade and validate is
-    made from solutions/, where no cell has this tag.
+    Its error is still shown. nbgrader reads only outputs, and the notebooks that we grade and
+    validate are made from solutions/, where cells do not have this tag.
     """
 
     enabled = True
@@ -107,21 +108,21 @@ class LetRunAllGoOn(Preprocessor):
     def preprocess_cell(
         self, cell: NotebookNode, resources: dict, index: int
     ) -> tuple[NotebookNode, dict]:
-        """Tag one cell, if it is locked code: it runs an answer, or checks it."""
+        """Tag one cell if it is locked code: such a cell runs an answer, or checks it."""
         if cell.cell_type == 'code' and cell.metadata.get('nbgrader', {}).get('locked'):
             cell.metadata['tags'] = [*cell.metadata.get('tags', []), 'raises-exception']
         return cell, resources
 
 
 class KeepDemoOutputs(Preprocessor):
-    """Clear all outputs but those of demonstrations: they show on GitHub before anything runs."""
+    """Remove all outputs except those of demonstrations: GitHub shows them before any run."""
 
     enabled = True
 
     def preprocess_cell(
         self, cell: NotebookNode, resources: dict, index: int
     ) -> tuple[NotebookNode, dict]:
-        """Clear one cell; its number goes in any case, since it changes with each run."""
+        """Clear one cell; always remove its execution count, which changes with each run."""
         if cell.cell_type == 'code':
             cell.execution_count = None
             if 'demo' not in cell.metadata.get('tags', ()):
@@ -129,5 +130,5 @@ class KeepDemoOutputs(Preprocessor):
             for output in cell.outputs:
                 if output.output_type == 'execute_result':
                     output.execution_count = None
-                output.get('data', {}).pop(WIDGET_VIEW, None)  # blank without its running kernel
+                output.get('data', {}).pop(WIDGET_VIEW, None)  # needs its running kernel
         return cell, resources

@@ -1,4 +1,4 @@
-"""Why a lesson in solutions/ can't be released, or graded, in the words of its author."""
+"""Why a lesson in solutions/ can't be released or graded, in terms that its author knows."""
 
 from collections.abc import Iterable, Iterator
 
@@ -12,7 +12,7 @@ from grader.course import Course
 def refuse_faulty(course: Course, assignments: Iterable[str]) -> None:
     """Raise CourseError with each lesson and cell that has a fault, and what to do about it.
 
-    nbgrader's own words name neither the lesson nor the cell.
+    nbgrader's own messages name neither the lesson nor the cell.
     """
     if faults := [fault for name in assignments for fault in _faults(course, name)]:
         raise CourseError('; '.join(faults))
@@ -24,4 +24,4 @@ def _faults(course: Course, name: str) -> Iterator[str]:
     for find in (metadata_faults, marker_faults, outside_of_exercises):
         if faults := [*find(source)]:
             yield from (f'{where} cannot be released: {fault}' for fault in faults)
-            return  # an answer without its type leaves its checks without an exercise
+            return  # an answer without its type would also leave its checks without an exercise

@@ -1,4 +1,4 @@
-"""What there is to translate: each English text of the course, in parts, with where it stands."""
+"""All English texts of the course that are translated, by part, with their places."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -18,14 +18,14 @@ from grader.authoring.quizzes import quizzes
 from grader.course import Course
 
 Texts = dict[str, list[str]]
-"""Where each English text of a part stands, in the order in which they are read."""
+"""The places of each English text of a part, in reading order."""
 
 IN_WORDS: tuple[str, ...] = ('action_types', 'background', 'camera', 'commands', 'copies')
 IN_WORDS += ('course_nodes', 'definition_view', 'executables', 'install_faults')
 IN_WORDS += ('entry_points', 'exercise', 'package_build', 'package_faults', 'packages')
 IN_WORDS += ('node_file', 'panel', 'program', 'refusals', 'runner', 'sliders', 'spinning')
 IN_WORDS += ('unknown_robot', 'waiting', 'workspace')
-"""The modules of `live` that say something in sentences; the others draw."""
+"""The modules of `live` with sentences for users; the others only draw."""
 MODULES = {
     'checks': [
         f'my_robot_basics/my_robot_basics/{package}/*.py'
@@ -59,26 +59,26 @@ MODULES = {
         'grader/storage/save_grades.py',
     ],
 }
-"""The modules that say something to students, for each part of the software."""
+"""The modules with texts for students, by catalogue."""
 DRAWN = ('live', 'drawing', 'doctor')
 """The packages whose pictures have an alternative text."""
 CHARTS = 'grader/report/charts.py'
 PAGES = {'feedback': 'grader/report/page.html.j2', 'report': 'grader/report/report.html.j2'}
-"""The templates of pages; what is told there of others' work is translated by its own part."""
+"""The templates of pages; texts of other modules shown there are in those modules' catalogues."""
 _MARKED = re.compile(r"\b_\('((?:[^'\\]|\\.)*)'")
-"""What a template marks as a text to translate."""
+"""Matches a text to translate in a template."""
 LAUNCHER = 'launcher'
 _SAY = {'put', 'say', 'marked', 'LauncherError'}
-"""What the launcher's modules give a text to that is to be translated."""
+"""Functions of the launcher's modules whose first argument is a text to translate."""
 _PUT = re.compile(r'(?:\bput|fault =) "((?:[^"\\$]|\\.)+)"', re.DOTALL)
-"""The same in `course`, where a backslash ends a line that goes on."""
+"""The same in `course`, where a backslash continues a line."""
 WHEREVER = ['wherever sentences are put together']
 STUDENTS = 'students.md'
-"""In solutions/: the README of what students get."""
+"""In solutions/: the README of the students' bundle."""
 
 
 def parts_of(course: Course) -> dict[str, Texts]:
-    """Return the English texts of each part: the lessons and the pages beside them."""
+    """Return the English texts of each part: lessons, pages and software."""
     parts = {name: _lesson(course, name) for name in course.assignments()}
     parts[index.PART] = {text: [index.INDEX] for text in _index(course)}
     parts |= {Path(name).stem: _notebook(quiz) for name, quiz in quizzes(course).items()}
@@ -92,7 +92,7 @@ def parts_of(course: Course) -> dict[str, Texts]:
 
 
 def _software(course: Course) -> dict[str, Texts]:
-    """Return what the software says: its modules, the feedback page, the checks of the lessons."""
+    """Return the texts of the software: modules, feedback page, and the lessons' checks."""
     root = course.root
     parts = {part: _modules(root, patterns) for part, patterns in MODULES.items()}
     if parts['checks']:
@@ -107,7 +107,7 @@ def _software(course: Course) -> dict[str, Texts]:
 
 
 def _add(texts: Texts, found: Iterable[str], place: str) -> None:
-    """Note that the texts that were found stand in that place."""
+    """Add the place to each of the texts."""
     for text in found:
         texts.setdefault(text, []).append(place)
 
@@ -130,7 +130,7 @@ def _pictures(root: Path) -> Texts:
 
 
 def _charts(root: Path) -> Texts:
-    """Return what the report's charts say."""
+    """Return the texts of the report's charts."""
     texts: Texts = {}
     for path in sorted(root.glob(CHARTS)):
         _add(texts, marked_in(path.read_text(encoding='utf-8'), _SAY), path.name)
@@ -138,14 +138,14 @@ def _charts(root: Path) -> Texts:
 
 
 def _add_templates(texts: Texts, root: Path, pattern: str) -> None:
-    """Add what the templates of pages mark as a text to translate."""
+    """Add the texts that templates of pages mark for translation."""
     for path in sorted(root.glob(pattern)):
         marked = _MARKED.findall(path.read_text(encoding='utf-8'))
         _add(texts, (text.replace("\\'", "'") for text in marked), path.name)
 
 
 def _launcher(root: Path) -> Texts:
-    """Return what `./course` itself says: a shell script, the table of its verbs, and modules."""
+    """Return the texts of `./course` itself: of the shell script, the verbs' table and modules."""
     texts: Texts = {}
     for path in root.glob('course'):
         put = _PUT.findall(path.read_text(encoding='utf-8'))
@@ -161,7 +161,7 @@ def _launcher(root: Path) -> Texts:
 
 
 def _checks_of_lessons(course: Course) -> tuple[Texts, Texts]:
-    """Return what grade cells say: in the part that students see, and in the hidden part alone."""
+    """Return texts of grade cells: those that students see, and those only in hidden parts."""
     seen: Texts = {}
     hidden: Texts = {}
     for name in course.assignments():

@@ -1,7 +1,7 @@
-"""`./course translate`: bring the catalogues up to date with the English, and tell what is left.
+"""`./course translate`: update the catalogues from the English texts, and list what is left.
 
-A text that has changed a little keeps its translation as *fuzzy*, with the English that it was
-made for: the release shows the new English until somebody has looked at it and removed the mark.
+If a text has changed a little, its translation stays, marked *fuzzy*, with the former English:
+the release shows the new English until a translator has checked it and removed the mark.
 """
 
 import io
@@ -20,7 +20,7 @@ from grader.common.files import write_whole
 from grader.course import Course
 
 _KEPT = re.compile(r'Language:|Plural-Forms|MIME-Version|Content-')
-"""What the head of a catalogue says. Git knows better who wrote what and when."""
+"""The header lines that are kept. Git has authors and dates."""
 
 
 @dataclass(frozen=True)
@@ -30,17 +30,17 @@ class PartReport:
     language: str
     part: str
     texts: int
-    """How many there are in English."""
+    """How many texts there are in English."""
     missing: tuple[tuple[str, str], ...]
-    """Where, and the English: there is no translation."""
+    """Place and English of each text without a translation."""
     outdated: tuple[tuple[str, str], ...]
-    """There is one for another English, or one that somebody has to look at."""
+    """The same for a text whose translation is of a former English, or marked fuzzy."""
 
 
 def update(course: Course) -> list[PartReport]:
-    """Write the catalogues of each language anew from the English; return what is left to do.
+    """Update the catalogues of each language from the English texts; return what is left to do.
 
-    Translations stay; those whose English is gone are dropped. Raises CourseError where a
+    Translations stay; those whose English no longer exists are removed. Raises CourseError if a
     catalogue can't be read.
     """
     locale, reports = course.root / 'locale', []
@@ -65,7 +65,7 @@ def _updated(path: Path, language: str, texts: Texts) -> Catalog:
     catalogue.update(template, update_creation_date=False)
     catalogue.obsolete.clear()
     for message in catalogue:
-        if not message.fuzzy:  # somebody has removed the mark, and left the English before
+        if not message.fuzzy:  # a translator may have left the former English
             message.user_comments = [
                 line for line in message.user_comments if not line.startswith('|')
             ]
@@ -95,21 +95,21 @@ def _report(language: str, part: str, texts: Texts, catalogue: Catalog) -> PartR
     left: dict[bool, list[tuple[str, str]]] = {True: [], False: []}
     for text, places in texts.items():
         message = catalogue[text]
-        assert isinstance(message, Message)  # it was just updated
+        assert isinstance(message, Message)  # the update has just added it
         if not message.string or message.fuzzy:
             left[bool(message.string)].append((places[0], text))
     return PartReport(language, part, len(texts), tuple(left[False]), tuple(left[True]))
 
 
 def lines(reports: list[PartReport], *, most: int = 10) -> Iterator[str]:
-    """Yield what to print: a line for each part, and the texts that are left, shortened."""
+    """Yield the lines to print: one for each part, and the texts that are left, shortened."""
     if not reports:
         yield 'No other language: make a folder such as locale/zh_CN/LC_MESSAGES/'
     for report in reports:
         done = report.texts - len(report.missing) - len(report.outdated)
         yield f'{report.language}  {report.part}: {done} of {report.texts}'
         if done == 0:
-            continue  # nobody has begun: each of them would be listed
+            continue  # not begun yet: do not list every text
         for word, left in (('out of date', report.outdated), ('missing', report.missing)):
             for place, text in left[:most]:
                 yield f'    {word}: {place}: {" ".join(text.split()):.60}'

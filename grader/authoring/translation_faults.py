@@ -1,4 +1,4 @@
-"""What a translation must have in common with its English, and how Chinese stands beside Latin."""
+"""Check that a translation keeps code, numbers and links, and the typography of Chinese."""
 
 import re
 import unicodedata
@@ -23,7 +23,7 @@ _KEPT: dict[str, re.Pattern[str]] = {
 _PLACEHOLDER = re.compile(r'\{\w*\}')
 _UNNAMED = re.compile(r'\{(value|verb)\d*\}')
 _NAME = re.compile(r'\b[\w.]+\(|\b\w+\.\w[\w.]*|\{\w+\}|\w*_\w+|/[\w/]+')
-"""What code calls something, and places."""
+"""Names in code, and placeholders."""
 _NUMBER = re.compile(r'(?<![\w.])\d+(?:[.,]\d+)*(?![\w])')
 _HAN = r'[\u3400-\u9fff\uf900-\ufaff]'
 _UNSPACED = re.compile(rf'{_HAN}(?=[A-Za-z0-9`$])|(?<=[A-Za-z0-9`$%°])(?={_HAN})')
@@ -33,14 +33,14 @@ _SPACED_MARK = re.compile(
 )
 _EMPHASISED = re.compile(r'\*[^*\n]+\*')
 _RUN = re.compile(r'[A-Za-z][A-Za-z0-9_-]*(?: [A-Za-z0-9_-]+)+')
-"""Several Latin words, one behind the other."""
+"""Several Latin words in a row."""
 _LINK_END = re.compile(r'\]\([^)]*\)')
 _ELSEWHERE = re.compile(r'\[[^\]]*\]\(https?:[^)]*\)')
-"""A link to an English page has its English name."""
+"""A link to an English page keeps its English name."""
 
 
 def faults_of(english: str, translated: str) -> Iterator[str]:
-    """Yield what is wrong with a translated block: something is lost, or does not look right."""
+    """Yield what is wrong with a translated block: what is lost, or typeset wrongly."""
     for what, pattern in _KEPT.items():
         ours, theirs = _count(pattern, english), _count(pattern, translated)
         if ours != theirs:
@@ -49,7 +49,7 @@ def faults_of(english: str, translated: str) -> Iterator[str]:
     if lost := _count(_NUMBER, plain[0]) - _count(_NUMBER, plain[1]):
         yield f'numbers: {", ".join(lost)} lost'
     had, has = (set(_PLACEHOLDER.findall(text)) for text in plain)
-    # the s of a plural and the like: what stands there has no name, and other languages do without
+    # a placeholder without a name, such as for the s of a plural, is not needed in every language
     gone = {place for place in had - has if not _UNNAMED.fullmatch(place)}
     if different := gone | (has - had):
         yield f'places: {", ".join(sorted(different))}'
@@ -57,7 +57,7 @@ def faults_of(english: str, translated: str) -> Iterator[str]:
 
 
 def _typography(text: str) -> Iterator[str]:
-    """Yield what a Chinese typesetter would change; nothing of it is in a Latin text."""
+    """Yield violations of Chinese typography; a text in Latin script has none of them."""
     text = _FENCED.sub('', text)
     shown = _LINK_END.sub(']', text)
     for what, pattern in (
@@ -71,10 +71,10 @@ def _typography(text: str) -> Iterator[str]:
 
 
 def _not_emphasised(text: str) -> Iterator[str]:
-    """Yield the * and ** that no reader of markdown takes as emphasis.
+    """Yield * and ** that markdown does not read as emphasis.
 
-    Beside a mark, as in `**节点：**是`, they count only with a space or a mark on the other side;
-    there is no space between Chinese words.
+    # a placeholder without a name, e.g. the s of a plural, is not needed in every language
+    a mark; between Chinese words there are no spaces.
     """
     for stars, kind in ((r'\*\*', 'bold'), (r'(?<!\*)\*(?!\*)', 'italic')):
         for number, found in enumerate(re.finditer(stars, text)):
@@ -93,9 +93,9 @@ def _around(text: str, at: int) -> str:
 
 
 def read_glossary(path: Path) -> dict[str, list[str]]:
-    """Return the translations that each English term may have: a line is `term | one | another`.
+    """Return the allowed translations of each English term: a line is `term | one | another`.
 
-    Lines that begin with # say something to translators.
+    Lines that begin with # are comments for translators.
     """
     rows = [
         [each.strip() for each in line.split('|')]
@@ -108,9 +108,10 @@ def read_glossary(path: Path) -> dict[str, list[str]]:
 def unknown_terms(
     english: str, translated: str, glossary: Mapping[str, Sequence[str]]
 ) -> Iterator[str]:
-    """Yield each term of the English block whose translation is none of the glossary's.
+    """Yield each term of the English block that is not translated as the glossary allows.
 
-    What is kept word for word, such as *Publisher count* and ros2 node list, is no prose.
+    What the translation keeps word for word, such as *Publisher count* or ros2 node list, is
+    ignored.
     """
     for kept in (*_EMPHASISED.findall(english), *_RUN.findall(translated)):
         english = english.replace(kept, '') if kept in translated else english

@@ -1,4 +1,4 @@
-"""Keep what somebody typed into a released notebook before another release replaces it."""
+"""Keep what was typed into a released notebook before a new release replaces it."""
 
 import shutil
 from collections.abc import Mapping
@@ -14,10 +14,10 @@ from grader.common.files import make_folder_for
 
 
 def keep_work(replaced: Mapping[str, Path], folder: Path, *, metadata: Mapping) -> dict[str, Path]:
-    """Copy the notebooks that somebody has worked in; return the copy of each, by its name.
+    """Copy the notebooks that somebody has worked in; return the copies by name.
 
-    `replaced` holds the notebooks that are about to be replaced, by their names, and `folder`
-    gets a folder for this time with the copies. `metadata` is what a release gives a notebook.
+    `replaced` has the notebooks that are about to be replaced, by name. The copies are put into a
+    new subfolder of `folder`, named after the time. `metadata` is that of a released notebook.
     """
     worked_in = {name: path for name, path in replaced.items() if _is_worked_in(path, metadata)}
     if not worked_in:
@@ -27,13 +27,13 @@ def keep_work(replaced: Mapping[str, Path], folder: Path, *, metadata: Mapping) 
 
 
 def _is_worked_in(path: Path, metadata: Mapping) -> bool:
-    """Whether a released notebook was saved by an editor, run, or answered since."""
+    """Whether a released notebook has been saved by an editor, run, or answered since."""
     try:
         notebook = nbformat.read(path, as_version=4)
     except FileNotFoundError:
         return False
     except (OSError, ValueError, nbformat.ValidationError):
-        return True  # whatever it is, no release wrote it
+        return True  # it can't be a release's unchanged file
     kept = {name: value for name, value in notebook.metadata.items() if name != KEY}
     return kept != metadata or any(_is_touched(cell) for cell in notebook.cells)
 

@@ -1,7 +1,7 @@
-"""Which answers are alike once names, strings, comments and layout are taken away.
+"""Find answers that are alike, apart from names, strings, comments and layout.
 
-Texts of students are read here, so this runs in a process with limits. `copydetect` tells what of
-a text is compared: winnowing, by which MOSS compares programs, of every group of characters.
+It reads texts of students, so it runs in a process with limits. `copydetect` compares them by
+winnowing, as MOSS compares programs: here, all groups of GROUP_CHARACTERS characters.
 """
 
 import io
@@ -13,20 +13,20 @@ from copydetect import CodeFingerprint, compare_files
 from copydetect.utils import highlight_overlap
 
 GROUP_CHARACTERS = 20
-"""What is compared, where each name is one character: about one short statement."""
+"""Characters in a group, where each name counts as one character: about one short statement."""
 FEWEST_GROUPS = 60
-"""Whoever has fewer of their own that others have not wrote what anybody would."""
+"""If two answers share fewer rare groups than this, they only have in common what is usual."""
 LEAST_SHARE = 0.7
-"""Of the shorter answer's own groups, those that the other has, too."""
+"""The share of the shorter answer's rare groups that the other must have, too."""
 COMMON_SHARE, COMMON_STUDENTS = 0.1, 3
-"""What more than this share of the class wrote, and more than so many, does not count."""
+"""A group that more of the class than this share, and more students than this, wrote is common."""
 
 
 def find_pairs(answers: dict[str, str], released: str, most: int) -> list[dict]:
     """Return the pairs of students whose answers are most alike, the most similar first.
 
-    Each has `students`, two names, `share`, from 0 to 1, and `texts`, both answers as HTML with
-    marks around what they have in common. The released text does not count.
+    Each has `students`, two names; `share`, from 0 to 1; and `texts`, both answers as HTML with
+    <mark> around what they have in common. Groups of the released text do not count.
     """
     prints = {student: _fingerprint(code) for student, code in answers.items()}
     given = _fingerprint(released).hashes
@@ -60,14 +60,14 @@ def find_pairs(answers: dict[str, str], released: str, most: int) -> list[dict]:
 
 
 def _fingerprint(code: str) -> CodeFingerprint:
-    """Return all groups of a text; a window of one leaves none out."""
+    """Return all groups of a text: with a window of 1, winnowing leaves none out."""
     return CodeFingerprint(
         'answer.py', GROUP_CHARACTERS, 1, language='python', fp=io.StringIO(code)
     )
 
 
 def _marked(one: CodeFingerprint, other: CodeFingerprint) -> list[str]:
-    """Return both texts as HTML, what they have in common marked."""
+    """Return both texts as HTML, with marks around what they have in common."""
     _, _, places = compare_files(one, other)
     return [
         highlight_overlap(
@@ -82,6 +82,6 @@ def _marked(one: CodeFingerprint, other: CodeFingerprint) -> list[str]:
 
 
 def _keep(found: CodeFingerprint, groups: Container[int]) -> None:
-    """Leave of what is compared only some groups."""
+    """Remove all groups of a fingerprint except these."""
     found.hash_idx = {group: at for group, at in found.hash_idx.items() if group in groups}
     found.hashes = set(found.hash_idx)

@@ -1,7 +1,7 @@
-"""What nbgrader's formgrader shows of a submission: it runs nothing, asks nobody, and ends.
+"""Filters for nbgrader's formgrader, so that a submission can't run code, load files or hang it.
 
-The formgrader's template leaves nbconvert's `sanitize_html` out for markdown cells. It shows pages
-in the server's own process: what students wrote is turned into HTML in one with limits.
+The formgrader's template omits nbconvert's `sanitize_html` for markdown cells, and it renders in
+the server's own process. So what students wrote is turned into HTML in a process with limits.
 """
 
 from functools import lru_cache
@@ -17,14 +17,14 @@ from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.common.text import visible
 
 LIMITS = Limits(cpu_sec=5)
-"""For one cell, or one output; an ordinary one takes some milliseconds of processor time."""
+"""For one cell or one output; an ordinary one takes some milliseconds of CPU time."""
 FILTERS = {
     'markdown2html': 'grader.report.formgrader.harmless_markdown',
     'highlight_code': 'grader.report.formgrader.highlighted',
     'clean_html': 'grader.report.formgrader.cleaned',
     'strip_files_prefix': 'grader.report.formgrader.without_files_prefix',
 }
-"""For nbconvert's HTMLExporter, in the place of its own."""
+"""They replace filters of nbconvert's HTMLExporter."""
 _TAGS = {'p', 'em', 'strong', 'del', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'br', 'hr'}
 _TAGS |= {'table', 'thead', 'tbody', 'tr', 'th', 'td'}
 _TAGS |= {'h1', 'h2', 'h3', 'h4', 'h5', 'h6', 'a', 'img', 'span', 'div'}
@@ -32,7 +32,7 @@ _PASTED = ('data:image/png;base64,', 'data:image/jpeg;base64,')
 
 
 def _allowed(tag: str, name: str, value: str) -> bool:
-    """Whether a tag may have an attribute; bleach itself sees to it that links lead to pages."""
+    """Whether a tag may have an attribute; bleach itself checks the protocol of links."""
     if tag == 'img':
         return name == 'alt' or (name == 'src' and value.startswith(_PASTED))
     return tag == 'a' and name == 'href' and not value.lower().startswith('data:')
@@ -40,18 +40,18 @@ def _allowed(tag: str, name: str, value: str) -> bool:
 
 @pass_context
 def harmless_markdown(context: Context, text: str) -> Markup:
-    """Turn markdown into the harmless part of its HTML, with pasted pictures: a Jinja filter."""
+    """Turn markdown into HTML, keeping only harmless tags and pasted pictures: a Jinja filter."""
     attachments = context.get('cell', {}).get('attachments', {})
     return Markup(_apart('grader.report.formgrader:markdown_apart', text, attachments))
 
 
 def highlighted(source: str, language: str | None = None, metadata: object = None) -> Markup:
-    """Colour code: a Jinja filter in the place of nbconvert's Highlight2HTML."""
+    """Highlight code: a Jinja filter that replaces nbconvert's Highlight2HTML."""
     return Markup(_apart('grader.report.formgrader:code_apart', source))
 
 
 def cleaned(html: str | bytes) -> Markup:
-    """Keep the harmless part of HTML: a Jinja filter in the place of nbconvert's clean_html."""
+    """Keep only the harmless part of HTML: a Jinja filter that replaces nbconvert's clean_html."""
     text = html.decode(errors='replace') if isinstance(html, bytes) else str(html)
     return Markup(_apart('nbconvert.filters:clean_html', text))
 
@@ -64,25 +64,25 @@ def without_files_prefix(html: str) -> Markup:
 
 
 def markdown_apart(text: str, attachments: dict) -> str:
-    """Return the harmless part of what markdown means, as HTML."""
+    """Return markdown as HTML with harmless tags only."""
     html = HTMLExporter().markdown2html({'cell': {'attachments': attachments}}, text)
     protocols = {'http', 'https', 'mailto', 'data'}
     return bleach.clean(html, tags=_TAGS, attributes=_allowed, protocols=protocols)
 
 
 def code_apart(source: str) -> str:
-    """Return Python code in colours, as HTML."""
+    """Return highlighted Python code, as HTML."""
     return nbconvert_filters.Highlight2HTML()(source)
 
 
 def _apart(function: str, text: str, *more: object) -> str:
-    """Return HTML that is made in a process with limits; the text itself where that can't be."""
+    """Return HTML that is made in a process with limits; if that fails, the text itself."""
     return _once(function, text) if not more else _limited(function, text, *more)
 
 
 @lru_cache(maxsize=1_000)
 def _once(function: str, text: str) -> str:
-    """Do that once for the cells that all submissions have."""
+    """Cache results: all submissions have many cells in common."""
     return _limited(function, text)
 
 

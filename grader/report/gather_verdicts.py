@@ -1,4 +1,4 @@
-"""The pass that brings the gradebook's scores and comments into a graded notebook."""
+"""The preprocessor that copies the gradebook's scores and comments into a graded notebook."""
 
 from nbformat import NotebookNode
 from nbgrader.api import MissingEntry
@@ -13,12 +13,12 @@ from grader.storage.submission_rows import SubmissionRows
 
 
 class GatherVerdicts(GetGrades):
-    """Put scores and comments into the notebook, and take hidden tests and tracebacks out."""
+    """Add scores and comments to the notebook, and remove hidden tests and tracebacks."""
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Do as nbgrader does, which asks the database for each cell.
+        """Do what nbgrader does, but without a database query for each cell.
 
-        Raises DamagedResult where the database holds nothing of the submission.
+        Raises DamagedResult if the database has no scores of the submission.
         """
         at = resources['nbgrader']
         self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
@@ -42,7 +42,7 @@ class GatherVerdicts(GetGrades):
     def preprocess_cell(
         self, cell: NotebookNode, resources: dict, index: int
     ) -> tuple[NotebookNode, dict]:
-        """Make one cell ready to be shown."""
+        """Prepare one cell for the page."""
         cell, resources = super().preprocess_cell(cell, resources, index)
         if cell.metadata.get('nbgrader', {}).get('grade') and cell.cell_type == 'code':
             cell, resources = ClearHiddenTests().preprocess_cell(cell, resources, index)
@@ -62,7 +62,7 @@ class GatherVerdicts(GetGrades):
 
 
 def _unknown(student: str, assignment: str, resources: dict) -> str:
-    """Say what to do about a graded notebook whose scores are not there, or no longer."""
+    """Return what to do about a graded notebook that has no scores in the database."""
     folder = Course.of_nbgrader(resources).folder('autograded', student, assignment)
     return (
         f'the database has no scores of it. ./course grade --student {student} grades it again; '

@@ -1,4 +1,4 @@
-"""Why points are missing, or a person is needed: messages that differ only in numbers are one."""
+"""Group reasons for missing points and for manual work: those that differ only in numbers."""
 
 import re
 from collections import defaultdict
@@ -13,29 +13,29 @@ _MANY = re.compile(r'…(, …)+')
 
 @dataclass(frozen=True)
 class CellMessage:
-    """What was said of one graded cell of one student, or of all that was handed in."""
+    """The message about one graded cell of one student, or about a whole submission."""
 
     student_id: str
     assignment: str
     grade_id: str
-    """'' where it is about all of it."""
+    """'' for a whole submission."""
     text: str
 
 
 @dataclass(frozen=True)
 class Reason:
-    """What was said of several students, where only the numbers differ."""
+    """A message to several students, in which only the numbers differ."""
 
     assignment: str
     words: str
-    """What was said, with … for its numbers where those differ."""
+    """The message, with … for numbers that differ."""
     example: str
     students: tuple[str, ...]
     checks: tuple[str, ...]
 
 
 def grouped(all_said: Iterable[CellMessage]) -> list[Reason]:
-    """Group what was said by its words; the most common comes first. All of it is printable."""
+    """Group messages by their words; the most common comes first. All text is made printable."""
     found = defaultdict(list)
     for said in all_said:
         text = printable(said.text)
@@ -54,14 +54,14 @@ def grouped(all_said: Iterable[CellMessage]) -> list[Reason]:
 
 
 def numberless(reason: str) -> str:
-    """Return a reason with … in the place of its numbers, and of lists of them."""
+    """Return a message with … in place of its numbers, and of lists of numbers."""
     return _MANY.sub('…', NUMBER.sub('…', reason))
 
 
 def _common(reasons: list[str]) -> str:
-    """Return the words of reasons that differ only in numbers, with … for those that differ."""
+    """Return the words of messages that differ only in numbers, with … for numbers that differ."""
     numbers = [[found[0] for found in NUMBER.finditer(reason)] for reason in reasons]
-    if len(set(map(len, numbers))) > 1:  # lists of numbers, of different lengths
+    if len(set(map(len, numbers))) > 1:  # they contain lists of numbers, of different lengths
         return numberless(reasons[0])
     same = iter([len(set(each)) == 1 for each in zip(*numbers, strict=True)])
     return _MANY.sub('…', NUMBER.sub(lambda found: found[0] if next(same) else '…', reasons[0]))

@@ -1,4 +1,4 @@
-"""Lay out a graded notebook as one HTML page that needs nothing else and runs nothing."""
+"""Render a graded notebook as one self-contained HTML page without scripts."""
 
 import re
 from contextlib import suppress
@@ -31,10 +31,10 @@ _ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
 
 
 def page(as_json: dict, about: dict, plain: str = '') -> str:
-    """Return the page; `about` is nbgrader's: student, assignment, score, max_score, late_penalty.
+    """Return the page; `about` has nbgrader's student, assignment, score, max_score, late_penalty.
 
-    Grade cells hold what students may see, and scores: see gather_verdicts.py. `plain` says
-    why text and code are shown as they were typed. All of it is JSON.
+    Grade cells have only what students may see, and scores: see gather_verdicts.py. If `plain` is
+    not empty, it says why text and code are shown unformatted. All arguments are JSON.
     """
     notebook = nbformat.from_dict(as_json)
     ours = notebook.metadata.get(KEY, {})
@@ -56,12 +56,12 @@ def page(as_json: dict, about: dict, plain: str = '') -> str:
 
 
 def get_ready() -> None:
-    """Make what all pages need: each is made in a process of its own, which would begin anew."""
+    """Prepare what all pages need: each page is made in a forked process, which inherits it."""
     _colour('None')
     _rich('None')
     _template(ENGLISH, is_plain=False)
     for language in languages(LOCALE):
-        with suppress(Exception):  # the pages in this language say what is wrong
+        with suppress(Exception):  # a page in this language will raise the error
             _template(language, is_plain=False)
 
 
@@ -70,7 +70,7 @@ def _colour(source: str) -> Markup:
 
 
 def _rich(text: str) -> Markup:
-    """Turn markdown into the harmless part of its HTML."""
+    """Turn markdown into HTML with harmless tags only."""
     html = bleach.clean(markdown2html(text), tags=_TAGS, attributes={}, strip=True)
     return Markup(_ENTITY.sub(lambda entity: _visible_entity(entity[0]), html))
 
@@ -81,12 +81,12 @@ def _visible_entity(entity: str) -> str:
 
 
 def _words(text: str) -> Markup:
-    """Show as code what stands between backticks."""
+    """Show text between backticks as code."""
     return Markup(re.sub('`([^`]+)`', r'<code>\1</code>', str(escape(text))))
 
 
 def _sentence(text: str) -> str:
-    """Begin with a capital letter, unless that would misspell a name in the code."""
+    """Capitalise the first word, unless it is a name in the code."""
     return _FIRST_WORD.sub(lambda word: word[0].capitalize(), text)
 
 
@@ -95,12 +95,12 @@ def _number(value: float) -> str:
 
 
 def _typed(text: str) -> Markup:
-    """Show text in its own lines, as it was typed."""
+    """Show text unformatted, with its line ends."""
     return Markup('<pre>{}</pre>').format(visible(text))
 
 
 def _title(english: str, about: dict, language: str) -> str:
-    """Return the lesson's title as its edition has it."""
+    """Return the lesson's title in the language of the page."""
     translations = (
         read_translations(LOCALE, language, str(about.get('assignment')))
         if language != ENGLISH

@@ -1,4 +1,4 @@
-"""What a page of feedback shows of a graded notebook: answers, outputs, checks, pictures."""
+"""The parts of a feedback page: answers, outputs, checks and pictures of a graded notebook."""
 
 import re
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from grader.common.text import visible
 from grader.notebook.restore import KEY, grade_id, role
 
 MAX_TEXT_CHARACTERS = 5_000
-"""What is shown of one output."""
+"""How much of one output is shown."""
 
 _REASON = '(?s)expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>{hint})'
 _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
@@ -25,19 +25,19 @@ _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
 
 @dataclass(frozen=True)
 class CellOutput:
-    """Something that a cell printed or drew."""
+    """Text or a picture that a cell printed or drew."""
 
     kind: str
     """'text', 'error', 'image/png' or 'image/jpeg'."""
     content: str
     alt: str = ''
     is_drawn: bool = False
-    """Whether code drew it: a dark page then shows it dark."""
+    """Whether code drew it: then a page in dark mode shows it dark."""
 
 
 @dataclass(frozen=True)
 class CheckedCell:
-    """One graded cell, as the page tells of it."""
+    """One graded cell, as the page shows it."""
 
     name: str
     title: str
@@ -50,12 +50,12 @@ class CheckedCell:
     seen: str
     hint: str
     troubles: tuple[str, ...]
-    """What went wrong in the student's own cells, where points are missing: look there first."""
+    """What went wrong in the student's own cells, if points are missing: shown first."""
     notes: tuple[str, ...]
     comment: str
     outputs: tuple[CellOutput, ...]
     source: str
-    """What students may read of the check."""
+    """The part of the check that students may read."""
 
 
 @dataclass
@@ -73,7 +73,7 @@ class PageSection:
 def find_sections(
     notebook: NotebookNode, language: str = ENGLISH
 ) -> tuple[list[PageSection], list[tuple[str, list[CellOutput]]]]:
-    """Return the exercises, and the other cells that have outputs."""
+    """Return the exercises, and source and outputs of other cells that have outputs."""
     sections, others = [PageSection('')], []
     for cell in notebook.cells:
         kind, name = role(cell), grade_id(cell) or ''
@@ -120,10 +120,10 @@ def _check(cell: NotebookNode, language: str = ENGLISH) -> CheckedCell:
 
 
 def _parts(reason: str, hint: str, language: str) -> dict[str, str]:
-    """Return what was expected and seen, and what to try, in a language; blanks if it says none.
+    """Split a reason into what was expected, what was seen, and a hint; '' for each if it can't.
 
-    A hint may have a colon in it, and so may what was seen: the check has told which is the hint,
-    and a catalogue tells which words belong together.
+    Both what was seen and the hint may contain a colon: the verdict has the exact hint, and the
+    catalogue of the language has the translation of each part.
     """
     said = re.fullmatch(_REASON.format(hint=re.escape(hint) or '.+'), reason)
     if said is None:
@@ -133,7 +133,7 @@ def _parts(reason: str, hint: str, language: str) -> dict[str, str]:
 
 
 def _title(cell: NotebookNode) -> str:
-    """Return what a check is called: true of what failed."""
+    """Return the title of a check, which is true of a failed check, too."""
     if cell.metadata.get(KEY, {}).get('failed_at_grading'):
         return title_of_failure(cell.source)
     return title_of_check(cell.source)
@@ -150,9 +150,9 @@ def _missing_reason(status: str, *, is_answer: bool) -> str:
 def _outputs(
     cell: NotebookNode, *, about: str = '', reason: str | None = None
 ) -> Iterator[CellOutput]:
-    """Yield a cell's outputs, in forms that can do nothing: text, PNG and JPEG.
+    """Yield a cell's outputs in harmless forms: text, PNG and JPEG.
 
-    Of a check, which has a `reason`, it is what stands beside that and the points.
+    For a check, which has a `reason`, errors, points and a repetition of the reason are skipped.
     """
     for output in cell.get('outputs', ()):
         if output.output_type in ('error', 'execute_result') and reason is not None:
@@ -170,7 +170,7 @@ def _outputs(
 
 
 def show_data(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[CellOutput]:
-    """Yield the first form of some output's data that can do nothing: a picture, or text."""
+    """Yield the first harmless form of an output's data: a picture, or text."""
     described = str(data.get('text/plain', ''))
     for kind in KINDS:
         if isinstance(data.get(kind), str) and _BASE64.fullmatch(data[kind]):

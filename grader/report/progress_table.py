@@ -1,4 +1,4 @@
-"""Print a row for each submission as it is graded, and a progress bar on a terminal."""
+"""Print a row for each submission when it is graded, and a progress bar on a terminal."""
 
 import shutil
 import sys
@@ -24,9 +24,9 @@ def print_rows(
     *,
     expected: dict[str, str] | None = None,
 ) -> Iterator[SubmissionOutcome]:
-    """Print each row as it comes, and pass it on.
+    """Print each row as it arrives, and yield it.
 
-    `expected` adds a column: what should come of each student.
+    `expected` adds a column: the expected outcome, by student.
     """
     student = _widest('student', (found.student_id for found in submissions))
     assignment = _widest('assignment', (found.assignment for found in submissions))
@@ -61,14 +61,14 @@ def print_rows(
 
 @contextmanager
 def _ticking(bar: tqdm) -> Iterator[None]:
-    """Draw a bar each second: a slow submission lets others wait, and time goes on."""
+    """Redraw a bar each second: during a slow submission no rows arrive, but its clock goes on."""
     done = threading.Event()
 
     def draw() -> None:
         while not done.wait(TICK_SEC):
             bar.refresh()
 
-    if bar.disable:  # no terminal
+    if bar.disable:  # stdout is not a terminal
         yield
         return
     thread = threading.Thread(target=draw, name='bar', daemon=True)
@@ -89,7 +89,7 @@ def _outcome(row: SubmissionOutcome) -> str:
 
 
 def score_of(row: SubmissionOutcome) -> str:
-    """Return a row's score as text: '2/5', '2/5 …' where some of it waits for a person."""
+    """Return a row's score as text: '2/5', or '2/5 …' if a part waits for manual grading."""
     if row.stored is None:
         return '–'
     waits = ' …' if row.stored.pending else ''
@@ -97,7 +97,7 @@ def score_of(row: SubmissionOutcome) -> str:
 
 
 def why(row: SubmissionOutcome) -> str:
-    """Return the reason of a row as one line, and what is new about it, or that nothing is."""
+    """Return the reason of a row as one line, with what has changed, or that nothing has."""
     stored, text = row.stored, printable(row.reason)
     if stored and stored.pending and not text:
         text = 'the rest is graded by hand'
@@ -111,7 +111,7 @@ def why(row: SubmissionOutcome) -> str:
 
 
 def changes(rows: Iterable[SubmissionOutcome]) -> list[str]:
-    """Return a line for each score that is not what it was before."""
+    """Return a line for each score that differs from the earlier one."""
     return [
         f'{printable(row.student_id)}  {printable(row.assignment)}  '
         f'{row.stored.former:g} → {row.stored.score:g} '
@@ -126,5 +126,5 @@ def _widest(title: str, names: Iterable[str]) -> int:
 
 
 def _fit(line: str) -> str:
-    """Cut a line to the terminal's width; where nobody sees columns, keep all of it."""
+    """Cut a line to the terminal's width; keep all of it if stdout is not a terminal."""
     return shorten(line, shutil.get_terminal_size().columns) if sys.stdout.isatty() else line

@@ -1,4 +1,4 @@
-"""The report of one run, for instructors: a page and the same as JSON."""
+"""The report of one run for instructors: a page, and the same facts as JSON."""
 
 import json
 from collections.abc import Sequence
@@ -28,12 +28,12 @@ from grader.report.templates import put_markup, template
 from grader.storage.records import records
 
 PART = 'report'
-"""The catalogue of the page's words."""
+"""The name of the catalogue with the page's texts."""
 SLOWEST = 10
 MOST_SHOWN = 20
-"""Reasons on the page; the JSON has all."""
+"""How many reasons the page shows; the JSON has all."""
 HARDEST = 8
-"""Checks that are named first; all of them come with their assignments."""
+"""How many of the hardest checks are listed first; all are listed with their assignments."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class Run:
     """One call of `./course grade`."""
 
     began: datetime
-    """With its time zone."""
+    """With a time zone."""
     seed: str = ''
-    """The seed that was replayed; '' for each student's own."""
+    """The seed that was replayed; '' if each student had a seed of their own."""
 
 
 def write_report(
@@ -51,7 +51,7 @@ def write_report(
 ) -> Path:
     """Write report.html and report.json into gradebook/runs/<time>/; return the page's path.
 
-    The page is in a language; report.json, which programs read, is in English.
+    The page is in `language`; report.json, which is for programs, is in English.
     """
     counted = tally(course, rows)
     now = {row.assignment for row in rows if row.seconds is not None and row.stored}
@@ -79,7 +79,7 @@ def write_report(
 
 
 def _facts(run: Run, rows: Sequence[SubmissionOutcome], counted: Tally) -> dict:
-    """Return all that the report says, as plain values."""
+    """Return all facts of the report as plain values."""
     seconds = (datetime.now().astimezone() - run.began).total_seconds()
     timed = [row for row in rows if row.seconds is not None]
     return {
@@ -118,7 +118,7 @@ def _facts(run: Run, rows: Sequence[SubmissionOutcome], counted: Tally) -> dict:
 
 
 def _titles(course: Course, counted: Tally, language: str) -> dict[str, str]:
-    """Return the titles of lessons as their edition has them."""
+    """Return the titles of lessons in the language of the report."""
     titles = {each.name: f'# {title_of(course.source(each.name))}' for each in counted.assignments}
     for name, title in titles.items():
         known = read_translations(LOCALE, language, name)

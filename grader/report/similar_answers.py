@@ -1,4 +1,4 @@
-"""Pairs of answers that are alike: a hint for a person, and never a part of a score."""
+"""Pairs of answers that are alike: a hint for a person, which never changes a score."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from grader.course import Course
 from grader.notebook.restore import grade_id
 
 MOST_PAIRS = 10
-"""Of one exercise, those that are most alike."""
+"""How many pairs of one exercise are reported, the most similar ones."""
 MOST_CHARACTERS = 20_000
-"""A longer answer is compared with none."""
+"""A longer answer is not compared."""
 LIMITS = Limits(cpu_sec=60)
 
 
@@ -25,14 +25,14 @@ class SimilarPair:
     exercise: str
     students: tuple[str, str]
     share: float
-    """How much of the shorter one the other has, too, from 0 to 1."""
+    """How much of the shorter answer is in the other one, from 0 to 1."""
     texts: tuple[str, str]
-    """Both as HTML, what they have in common in <mark>."""
+    """Both as HTML, with <mark> around what they have in common."""
 
 
 @dataclass(frozen=True)
 class SimilarAnswers:
-    """What was found in some assignments."""
+    """The pairs that were found in some assignments."""
 
     pairs: tuple[SimilarPair, ...]
     problems: tuple[str, ...]
@@ -40,7 +40,7 @@ class SimilarAnswers:
 
 
 def find_similar(course: Course, assignments: Iterable[str]) -> SimilarAnswers:
-    """Compare the answers of all students whose work was graded."""
+    """Compare the answers of all students whose submissions were graded."""
     pairs: list[SimilarPair] = []
     problems = []
     for assignment in assignments:
@@ -66,8 +66,8 @@ def find_similar(course: Course, assignments: Iterable[str]) -> SimilarAnswers:
 
 
 def _answers(course: Course, assignment: str) -> dict[str, tuple[str, dict[str, str]]]:
-    """Return for each exercise the text that students began with, and theirs by student."""
-    # not before: it takes long, and where nothing was graded nothing is compared
+    """Return for each exercise the released text, and the students' answers."""
+    # imported late: it takes long, and is not needed if nothing was graded
     from my_robot_basics.validate.exercises import find_exercises
 
     released = course.release(assignment)

@@ -1,4 +1,4 @@
-"""What one run says of a class: scores, checks, reasons, and what a person should look at."""
+"""Statistics of one run: scores, checks, reasons, and what a person should look at."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
@@ -25,21 +25,21 @@ class CheckStatistics:
     title: str
     points: float
     passed: int
-    """Students with all of its points."""
+    """How many students have all of its points."""
     missed: int
     waiting: int
-    """Students whose score a person has to decide."""
+    """How many students wait for manual grading."""
     why: Reason | None = None
-    """What most of those who missed it were told."""
+    """The most common reason of those who missed points."""
 
     @property
     def rate(self) -> float:
-        """Return the share of those with a score who got all points, 0 to 1."""
+        """Return the share of students with all points, among those with a score, 0 to 1."""
         return self.passed / max(1, self.passed + self.missed)
 
     @property
     def students(self) -> int:
-        """Return how many handed in."""
+        """Return how many students handed in."""
         return self.passed + self.missed + self.waiting
 
 
@@ -49,10 +49,10 @@ class AssignmentStatistics:
 
     name: str
     version: str
-    """Of the lesson's text."""
+    """A hash of the lesson's text."""
     max_score: float
     scores: tuple[float, ...]
-    """Of each student, the lowest first; what waits for a person counts 0."""
+    """The students' scores, the lowest first; what waits for manual grading counts 0."""
     checks: tuple[CheckStatistics, ...]
 
     @property
@@ -68,17 +68,17 @@ class AssignmentStatistics:
 
 @dataclass(frozen=True)
 class Tally:
-    """What one run says of a class; everything that students wrote is printable text."""
+    """The statistics of one run; all text from students is printable."""
 
     assignments: tuple[AssignmentStatistics, ...]
     reasons: tuple[Reason, ...]
     """Why points are missing, the most common reason first."""
     looks: tuple[Reason, ...]
-    """Why a person should look, and at whose submissions; what is only to be read comes last."""
+    """What a person should look at, by reason; answers that are only to be read come last."""
 
     @property
     def hardest(self) -> list[tuple[str, CheckStatistics]]:
-        """Return assignment and check where anybody missed points, most of the class first."""
+        """Return assignment and check for checks with missed points, most missed first."""
         missed = [
             (each.name, check)
             for each in self.assignments
@@ -90,7 +90,7 @@ class Tally:
 
 @dataclass(frozen=True)
 class _Said:
-    """What a graded notebook says: the notebooks of a large class would fill the memory."""
+    """The part of a graded notebook that is kept: whole notebooks would fill the memory."""
 
     problem: str
     verdicts: dict[str, dict]
@@ -101,7 +101,7 @@ def _said(graded: NotebookNode) -> _Said:
 
 
 def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
-    """Count what came of the submissions of one run."""
+    """Compute the statistics of one run's submissions."""
     whose = {(row.student_id, row.assignment): row for row in rows if row.stored}
     of_cells = defaultdict(list)
     for record in records(course, only=whose.keys()):

@@ -1,4 +1,4 @@
-"""Jinja templates of the grader's pages: whatever they are given is escaped, and visible."""
+"""Jinja templates of the grader's pages: all values are escaped, and control characters shown."""
 
 import os
 from collections.abc import Callable, Mapping
@@ -15,7 +15,7 @@ def template(
     filters: Mapping[str, Callable] | None = None,
     values: Mapping[str, object] | None = None,
 ) -> Template:
-    """Load the template `name` beside this file, with filters and values of its own."""
+    """Load the template `name` from this folder, with additional filters and values."""
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -24,20 +24,20 @@ def template(
         finalize=_visible,
     )
     if os.access(compiled := Path(__file__).with_name('__pycache__'), os.W_OK):
-        environment.bytecode_cache = FileSystemBytecodeCache(str(compiled))  # as Python's own
+        environment.bytecode_cache = FileSystemBytecodeCache(str(compiled))  # beside Python's
     environment.filters |= filters or {}
     environment.globals |= values or {}
     return environment.get_template(name)
 
 
 def put_markup(translations: Mapping[str, str], english: str, **values: object) -> Markup:
-    """Return a text of a page's own as it is translated, with values in its places."""
+    """Return the translation of a page's own text, with its placeholders filled in."""
     text = escape(translations.get(english, english))
     return Markup(text.format(**values)) if values else text
 
 
 def _visible(value: object) -> object:
-    """Spell out what nobody can see, in text and in HTML that is made of text."""
+    """Escape invisible characters, in text and in HTML made from text."""
     if isinstance(value, Markup):
         return Markup(visible(value))
     return visible(value) if isinstance(value, str) else value
