@@ -1,1 +1,1 @@
-"""What `nbgrader autograde` runs of ours, in place of its own reading and execution."""
+"""What `nbgrader autograde` calls of this package, instead of its own preprocessors."""

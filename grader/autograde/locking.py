@@ -1,4 +1,4 @@
-"""How `nbgrader autograde` takes the gradebook's lock: once for each submission that it grades."""
+"""Make `nbgrader autograde` take the gradebook's lock, once for each submission."""
 
 from pathlib import Path
 
@@ -11,12 +11,12 @@ _convert = Autograde.convert_single_notebook
 
 
 def convert_under_lock(converter: Autograde, notebook_filename: str) -> None:
-    """Restore, grade and write one notebook while no other process writes into the gradebook."""
+    """Restore, grade and store one notebook while no other process writes into the gradebook."""
     gradebook = gradebook_of(converter.coursedir.db_url, Path(converter.coursedir.root))
     with gradebook_lock(gradebook, converter.log.warning):
         _convert(converter, notebook_filename)
 
 
 def lock_while_grading() -> None:
-    """Let `nbgrader autograde` hold the lock; no option and no pass of nbgrader's can do it."""
+    """Patch `nbgrader autograde` to hold the lock; none of its options or preprocessors can."""
     Autograde.convert_single_notebook = convert_under_lock

@@ -1,4 +1,4 @@
-"""Our two passes among nbgrader's: restore a submission, and run it in two rooms."""
+"""Our two preprocessors for nbgrader: restore a submission, and run it in two rooms."""
 
 import atexit
 from functools import cache
@@ -18,9 +18,10 @@ from grader.workers.workers import Workers
 
 
 def submission_of(resources: dict) -> Submission:
-    """Return what nbgrader is about to grade, read anew from what was handed in.
+    """Return the submission that nbgrader is grading, read again from submitted/.
 
-    Not from autograded/: nbgrader puts the instructor's files, a solved package, over those there.
+    It can't be read from autograded/: there, nbgrader overwrites the student's package with the
+    instructor's solved one.
     """
     course, at = Course.of_nbgrader(resources), resources['nbgrader']
     return read_submission(
@@ -32,14 +33,14 @@ def submission_of(resources: dict) -> Submission:
 
 
 class RestoreSubmission(Preprocessor):
-    """Put a submitted notebook back into the shape of its source."""
+    """Restore a submitted notebook from its source."""
 
     enabled = True
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
-        """Return the restored notebook; the submitted file is not touched.
+        """Return the restored notebook; the submitted file is not changed.
 
-        It is read anew, as strangers' files are: what nbgrader has read may hold anything.
+        The file is read again, with limits: the notebook that nbgrader has read is not checked.
         """
         at = resources['nbgrader']
         submission = submission_of(resources)
@@ -54,10 +55,10 @@ class RestoreSubmission(Preprocessor):
 
 
 class ExecuteRooms(Preprocessor):
-    """Run student cells in one kernel and grade cells in another, in nbgrader's Execute's place.
+    """Run student cells in one kernel and grade cells in another; replaces nbgrader's Execute.
 
-    That is done by a worker process, as for `./course grade`: this one holds the gradebook.
-    nbgrader's resource path is not used as a working directory: that folder holds the tests.
+    A worker process does that, as for `./course grade`, because this process has the gradebook.
+    nbgrader's resource path is not used as working directory: that folder contains the tests.
     """
 
     enabled = True
@@ -68,7 +69,7 @@ class ExecuteRooms(Preprocessor):
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
         """Return the executed notebook with a verdict in each grade cell.
 
-        Raises CourseError where there is no sandbox, and TaskFailed where there is no verdict.
+        Raises CourseError if there is no sandbox, and TaskFailed if there is no verdict.
         """
         at = resources['nbgrader']
         require_isolation(trust_students=self.trust_students)
@@ -84,7 +85,7 @@ class ExecuteRooms(Preprocessor):
 
 @cache
 def _workers() -> Workers:
-    """Return the one that grades for this process, as long as this one lives."""
+    """Return this process's worker, which ends with this process."""
     workers = Workers(1, in_flight=1).__enter__()
     atexit.register(workers.__exit__)
     return workers

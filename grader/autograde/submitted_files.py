@@ -1,8 +1,8 @@
-"""How nbgrader's own commands read what students handed in: no text of theirs is parsed there.
+"""How nbgrader's own commands read submissions: without parsing students' text themselves.
 
-nbgrader would read a notebook with nbformat, which checks all of its schema: 30,000 outputs, in
-0.7 MB, take 40 s and 1.4 GB. And it would read times with dateutil, which some texts make raise
-what ends the command.
+nbgrader would read a notebook with nbformat, which checks its whole schema: 30,000 outputs, in
+0.7 MB, take 40 s and 1.4 GB. It would read times with dateutil, which raises unexpected
+exceptions for some texts, and the command would end.
 """
 
 from datetime import datetime
@@ -20,32 +20,32 @@ from grader.notebook.submission import TIMESTAMP
 
 
 class AutogradeExporter(NotebookExporter):
-    """Reads what nbgrader itself wrote, and leaves submitted notebooks to RestoreSubmission."""
+    """Reads notebooks that nbgrader wrote; submitted ones are left to RestoreSubmission."""
 
     def from_file(  # type: ignore[override]  # nbconvert's own exporter of notebooks returns text
         self, file_stream: IO[str], resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
-        """Return a notebook that went through the passes, as JSON."""
+        """Return a notebook after the preprocessors, as JSON."""
         if not any(isinstance(each, RestoreSubmission) for each in self._preprocessors):
             return super().from_file(file_stream, resources, **options)  # type: ignore[return-value]
         return self.from_notebook_node(nbformat.v4.new_notebook(), resources, **options)
 
 
 def existing_timestamp(course: CourseDirectory, dest_path: str) -> datetime | None:
-    """Return when a submission was handed in (UTC, without a zone), where that is told."""
+    """Return when a submission was handed in (UTC, without a time zone); None if unknown."""
     when = date_of(Path(dest_path, TIMESTAMP))
     return when and when.replace(tzinfo=None)
 
 
 def read_timestamps_as_we_do() -> None:
-    """Let nbgrader's commands read timestamps so; none of its options does it."""
+    """Patch nbgrader's commands to read timestamps with our parser; no option can do it."""
     CourseDirectory.get_existing_timestamp = existing_timestamp
 
 
 def files_of_solved_packages(course: Course) -> dict[str, list[str]]:
     """Return the files of packages in solutions/, by assignment, relative to its folder.
 
-    They are no master versions: autograded/ is to hold the students' own packages.
+    nbgrader must not overwrite the students' own packages in autograded/ with them.
     """
     found = {}
     for assignment in course.assignments():

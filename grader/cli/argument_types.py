@@ -1,4 +1,4 @@
-"""What an argument of `./course` may be, and the words for what it may not be."""
+"""Types of arguments of `./course`, with messages for invalid ones."""
 
 import argparse
 from collections.abc import Sequence
@@ -9,14 +9,14 @@ from grader.common.asked import RECORDED, local_time
 
 
 class VerbParser(argparse.ArgumentParser):
-    """Refuses what a verb does not take itself: its own usage is shown, not that of all verbs."""
+    """Refuses arguments that a verb does not know, and shows only this verb's usage."""
 
     def parse_known_args(  # type: ignore[override]  # argparse gives it no other namespace
         self,
         args: Sequence[str] | None = None,
         namespace: argparse.Namespace | None = None,
     ) -> tuple[argparse.Namespace, list[str]]:
-        """Read the arguments; end with status 2 where some are left."""
+        """Parse the arguments; exit with status 2 if some are unknown."""
         found, left = super().parse_known_args(args, namespace)
         if left:
             self.error(f'unrecognized arguments: {" ".join(left)}')

@@ -1,6 +1,6 @@
-"""What may stand behind `./course`: verbs, their arguments, and what `--help` says of them.
+"""The arguments of `./course`: verbs, their options, and the texts of `--help`.
 
-Reading them needs nothing that grades: `tests/test_command_line.py` says what is not imported.
+Parsing them imports nothing that grades: `tests/test_command_line.py` lists what must not be.
 """
 
 import argparse
@@ -14,7 +14,7 @@ from grader.common.asked import PLATFORMS, RECORDED
 
 
 def make_parser() -> argparse.ArgumentParser:
-    """Return the parser; what it makes of arguments has the function that does it as `run`."""
+    """Return the parser; the parsed arguments have the verb's function as `run`."""
     parser = argparse.ArgumentParser(prog='./course', description='Release, grade, tell.')
     subparsers = parser.add_subparsers(required=True, metavar='VERB', parser_class=VerbParser)
 

@@ -1,11 +1,11 @@
-"""Who can send to the ROS nodes of a student, and receive from them, for each way of running."""
+"""Who can send to a student's ROS nodes, and receive from them, by way of running the course."""
 
 from collections.abc import Iterator, Sequence
 
 from grader.kernels.isolation import Protection
 
 NEEDED = ('user and mount', 'network namespace', 'PID namespace')
-"""What a room on a hub is made of, as the names of protections say it."""
+"""Parts of the names of those protections that a room on a hub needs."""
 WAYS = (
     ('./course lab, a machine of your own', 'what runs on that machine'),
     (
@@ -21,7 +21,7 @@ WAYS = (
 
 
 def describe_audiences(protections: Sequence[Protection]) -> Iterator[str]:
-    """Yield lines for each way of running, and whether this machine can be such a hub."""
+    """Yield lines about each way of running, and whether this machine could be such a hub."""
     yield "Who can send to a student's ROS nodes, and receive from them:"
     for way, who in WAYS:
         yield f'  {way}:\n      {who}'

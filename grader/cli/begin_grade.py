@@ -1,4 +1,4 @@
-"""`./course grade`, before what takes long to import: the first worker starts meanwhile."""
+"""The beginning of `./course grade`: the first worker starts before the slow imports."""
 
 import argparse
 
@@ -11,7 +11,7 @@ from grader.workers.workers import Workers
 
 
 def run_grade(course: Course, asked: argparse.Namespace) -> int:
-    """Do what the verb does; return its exit status."""
+    """Run the verb; return its exit status."""
     cluster = _cluster(asked)
     found = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if cluster:
@@ -27,7 +27,7 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _cluster(asked: argparse.Namespace) -> Backend | None:
-    """Return the cluster that is to grade, or None. Raises CourseError for what goes nowhere."""
+    """Return the cluster to grade on, or None. Raises CourseError for options that don't fit."""
     from grader.workers.dask_client import Certificates
 
     certificates = Certificates(asked.tls_ca_file, asked.tls_cert, asked.tls_key)

@@ -1,4 +1,4 @@
-"""Grade a sample class whose file names say what should come of each notebook."""
+"""Grade a sample class, in which file names say the expected outcomes."""
 
 import shutil
 import tempfile
@@ -27,13 +27,13 @@ OUTCOMES: dict[str, Callable[[list[str]], bool]] = {
     'mixed': lambda outcomes: set(outcomes) == {'passed', 'failed'},
     'zero': lambda outcomes: set(outcomes) == {'failed'},
 }
-"""What the second part of a sample's name asks of its checks."""
+"""Conditions for the outcomes of a sample's checks, by the second part of its name."""
 
 
 def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
-    """Grade `<assignment>-<outcome>-<why>.ipynb`, print the table; return whether all is as named.
+    """Grade `<assignment>-<outcome>-<why>.ipynb`, print the table; return whether all are right.
 
-    The gradebook is a temporary one, and stays to be looked at.
+    The gradebook is a temporary folder, which is kept for inspection.
     """
     course = Course(root=root, gradebook=Path(tempfile.mkdtemp(prefix='my_robot_basics-demo-')))
     expected = {}
@@ -59,10 +59,10 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
 
 
 def hand_in(course: Course, sample: Path, assignment: str) -> None:
-    """Put a sample where submissions lie.
+    """Put a sample into submitted/.
 
-    A package that its lesson asks for is the solution's; files in a folder that is named as the
-    sample is replace those.
+    A package that its lesson needs is copied from the solution; files in a folder with the
+    sample's name replace those.
     """
     folder = course.folder('submitted', sample.stem, assignment)
     folder.mkdir(parents=True)
@@ -92,5 +92,5 @@ def _as_named(course: Course, row: SubmissionOutcome, outcome: str) -> bool:
 
 
 def _most_telling(pages: list[Path], expected: dict[str, str]) -> Path:
-    """Return a page of a student who has something to fix."""
+    """Return the page of a student who has something to fix."""
     return next((p for p in pages if expected[p.parts[-3]] != 'pass'), pages[0])

@@ -1,4 +1,4 @@
-"""What `./course doctor` prints: what isolates student code, and whose nodes can reach whose."""
+"""The output of `./course doctor`: what isolates student code, and who can reach whose nodes."""
 
 import argparse
 

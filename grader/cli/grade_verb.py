@@ -1,4 +1,4 @@
-"""What `./course grade` does and prints: it grades, or grades once more and compares."""
+"""The work and output of `./course grade`: grade, or grade again with a seed and compare."""
 
 import argparse
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ def run_grade(
     submissions: Sequence[SubmissionFolder],
     backend: Backend,
 ) -> int:
-    """Grade, a row for each submission, and write the report. 1 where one could not be graded."""
+    """Grade, print a row for each submission, write the report; return 1 if one was not graded."""
     with one_engine(course.db_url):
         return _run_grade(course, asked, submissions, backend)
 
@@ -62,7 +62,7 @@ def _run_grade(
         for row in print_rows(graded, submissions):
             rows.append(row)
     except KeyboardInterrupt:
-        graded.close()  # nothing more is started; what runs is ended before anybody reads that
+        graded.close()  # start nothing more, and end what runs, before the summary is printed
         summary = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
         raise KeyboardInterrupt(summary) from None
     report = write_report(course, run, rows, language=asked.language)

@@ -1,4 +1,4 @@
-"""What `./course scores` and `./course feedback` do and print: what a class is given."""
+"""The work and output of `./course scores` and `./course feedback`."""
 
 import argparse
 import sys
@@ -16,7 +16,7 @@ from grader.storage.registering import withdrawn
 
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:
-    """Write a table of scores, and say where it lies."""
+    """Write a table of scores, and print its path."""
     to_platform = asked.format or (asked.send and not asked.roster)
     if (asked.assignment or asked.roster) and not to_platform:
         raise CourseError(
@@ -39,8 +39,8 @@ def run_scores(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _send_scores(course: Course, assignment: str) -> int:
-    """Send what has changed. 1 where the platform has not taken all of it."""
-    from grader.passback.lti import send_scores  # an extra, and half a second to import
+    """Send changed scores; return 1 if the platform has not taken all of them."""
+    from grader.passback.lti import send_scores  # optional, and takes half a second to import
 
     done = send_scores(course, assignment, _say_line)
     print(f'{done.sent} scores sent, {done.waiting} waiting')
@@ -50,8 +50,8 @@ def _send_scores(course: Course, assignment: str) -> int:
 
 
 def run_feedback(course: Course, asked: argparse.Namespace) -> int:
-    """Write the pages of feedback, and say where they lie."""
-    from grader.report.feedback import write_feedback  # nbconvert, which scores do without
+    """Write the feedback pages, and print where they are."""
+    from grader.report.feedback import write_feedback  # imports nbconvert; scores don't need it
 
     _wait_for_database(course)
     pages = write_feedback(course, say=_say_line)
@@ -63,7 +63,7 @@ def run_feedback(course: Course, asked: argparse.Namespace) -> int:
 
 
 def _say_what_is_withdrawn(course: Course) -> None:
-    """Name lessons that solutions/ has no longer, and whose scores count all the same."""
+    """Print lessons that are no longer in solutions/, but whose scores still count."""
     with connected(course.db_url) as book:
         found = withdrawn(course, book)
     for name, number in sorted(found.items()):

@@ -1,4 +1,4 @@
-"""What `./course serve` does and prints: it grades what is handed in until it is ended."""
+"""The work and output of `./course serve`: grade what is handed in, until it is ended."""
 
 import argparse
 from datetime import datetime
@@ -17,7 +17,7 @@ _INBOUND = (
 
 
 def run_serve(course: Course, asked: argparse.Namespace) -> int:
-    """Serve a folder until SIGINT or SIGTERM, or say what the process that does it is at."""
+    """Serve a folder until SIGINT or SIGTERM, or print the state of the process that does."""
     if asked.status:
         with queue_to_read(course.gradebook) as queue:
             for line in status_lines(course, queue):

@@ -1,4 +1,4 @@
-"""Being told to stop: what ends a process from outside ends it as Ctrl-C does."""
+"""Handle SIGTERM and SIGHUP like Ctrl-C."""
 
 import signal
 from collections.abc import Iterator
@@ -9,30 +9,30 @@ _SIGNALS = (signal.SIGTERM, signal.SIGHUP)
 
 
 class Stop:
-    """By which signal we were told to stop."""
+    """The signal by which this process was told to stop."""
 
     def __init__(self) -> None:
-        """Take Ctrl-C for it, until told otherwise."""
+        """Assume Ctrl-C until another signal arrives."""
         self._number = signal.SIGINT
 
     @property
     def status(self) -> int:
-        """The exit status of a process that a signal ended."""
+        """The exit status of a process that this signal ended."""
         return 128 + self._number
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """Pass a signal on to the handler of Ctrl-C that is set now."""
+        """Pass a signal on to the current handler of Ctrl-C."""
         self._number = signal.Signals(number)
         answer = signal.getsignal(signal.SIGINT)
-        # in the background Ctrl-C may be ignored, which says nothing of other signals
+        # a background process may ignore Ctrl-C, but must still react to other signals
         (answer if callable(answer) else signal.default_int_handler)(number, frame)
 
 
 @contextmanager
 def stoppable() -> Iterator[Stop]:
-    """Turn SIGTERM and SIGHUP into a KeyboardInterrupt; one that is ignored (nohup) stays so.
+    """Turn SIGTERM and SIGHUP into KeyboardInterrupt, unless they are ignored (nohup).
 
-    For the main thread alone: Python tells no other one of signals.
+    For the main thread only: Python handles signals in no other thread.
     """
     stop = Stop()
     ours = [each for each in _SIGNALS if signal.getsignal(each) is signal.SIG_DFL]

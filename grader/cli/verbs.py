@@ -1,6 +1,6 @@
-"""What `./course VERB` does and prints: a function for each verb, which returns the status.
+"""The work and output of `./course VERB`: a function for each verb, which returns the status.
 
-Each imports what it needs: `--help` and a wrong argument need none of it, and most verbs little.
+Each function imports what it needs, so that `--help` and most verbs start fast.
 """
 
 import argparse
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from grader.course import Course
 
 NO_DATE = 'none'
-"""Stands for a due date that is taken back."""
+"""Given instead of a date, it removes a due date."""
 
 
 def run_release(course: 'Course', asked: argparse.Namespace) -> int:
-    """Write notebooks/ anew, and name the files that have changed."""
+    """Update notebooks/, and print the files that have changed."""
     from grader.authoring.release import release
     from grader.storage.database import has_database
     from grader.storage.registering import register
@@ -24,7 +24,7 @@ def run_release(course: 'Course', asked: argparse.Namespace) -> int:
     wanted = [asked.assignment] if asked.assignment else course.assignments()
     if has_database(course):
         for assignment in wanted:
-            register(course, assignment)  # refuses what graded submissions can't follow
+            register(course, assignment)  # raises if graded submissions would not fit any more
     changed = release(
         course, asked.assignment or '*', fresh_outputs=asked.fresh_outputs, say=print
     )
@@ -35,7 +35,7 @@ def run_release(course: 'Course', asked: argparse.Namespace) -> int:
 
 
 def run_bundle(course: 'Course', asked: argparse.Namespace) -> int:
-    """Make the zip that students get, and say what it leaves out."""
+    """Make the students' zip, and print what it leaves out."""
     from grader.authoring.bundle import bundle
 
     made = bundle(course, asked.file)
@@ -46,7 +46,7 @@ def run_bundle(course: 'Course', asked: argparse.Namespace) -> int:
 
 
 def run_translate(course: 'Course', asked: argparse.Namespace) -> int:
-    """Bring locale/ up to date with the English texts, and list what is to be translated."""
+    """Update locale/ from the English texts, and list what is to be translated."""
     from grader.authoring import translate
 
     for line in translate.lines(translate.update(course)):
@@ -55,7 +55,7 @@ def run_translate(course: 'Course', asked: argparse.Namespace) -> int:
 
 
 def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
-    """Take in submissions, a line for each file. 1 where none was taken or one wants a look."""
+    """Take in submissions, a line for each file; return 1 if none was taken or one was left."""
     from grader.collect.collect import LEFT, collect
     from grader.collect.collect_table import lines
 
@@ -69,7 +69,7 @@ def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
 
 
 def run_due(course: 'Course', asked: argparse.Namespace) -> int:
-    """Set a due date or an extension where one is given, and list all of them."""
+    """Set a due date or an extension if one is given, and list all of them."""
     from grader.storage.deadlines import extended_for_nobody
     from grader.storage.due_dates import describe_deadlines, set_due
 
@@ -87,14 +87,14 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
         set_due(course, asked.assignment, when, student_id=asked.student)
     for line in (*describe_deadlines(course), *extended_for_nobody(course)):
         print(line)
-    # what a date changes is counted by each of them, without running anything again
+    # each of these verbs applies the new date, without running any submission again
     if asked.assignment and any(course.folder('submitted', '', '').glob(f'*/{asked.assignment}')):
         print('Next: ./course scores, ./course feedback or ./course grade: each counts it')
     return 0
 
 
 def begin_grade(asked: argparse.Namespace) -> None:
-    """Begin to try the sandbox: programs are waited for, and so much can be imported meanwhile."""
+    """Begin to try the sandbox in a thread: it mostly waits, and imports go on meanwhile."""
     from grader.kernels.isolation import look_ahead
 
     if not asked.dask:
@@ -102,28 +102,28 @@ def begin_grade(asked: argparse.Namespace) -> None:
 
 
 def run_grade(course: 'Course', asked: argparse.Namespace) -> int:
-    """Grade, a row for each submission, or grade once more and compare."""
+    """Grade, with a row for each submission, or grade again with a seed and compare."""
     from grader.cli import begin_grade
 
     return begin_grade.run_grade(course, asked)
 
 
 def run_serve(course: 'Course', asked: argparse.Namespace) -> int:
-    """Serve a folder until it is ended, or say what the process that does it is at."""
+    """Serve a folder until it is ended, or print the state of the process that does."""
     from grader.cli import serve_verb
 
     return serve_verb.run_serve(course, asked)
 
 
 def run_scores(course: 'Course', asked: argparse.Namespace) -> int:
-    """Write a table of scores, and say where it lies."""
+    """Write a table of scores, and print its path."""
     from grader.cli import hand_back
 
     return hand_back.run_scores(course, asked)
 
 
 def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
-    """Write notebooks with the answers, to give out after the deadline."""
+    """Write notebooks with the answers, to hand out after the deadline."""
     from grader.export.sample_solutions import write_solutions
 
     wanted = [asked.assignment] if asked.assignment else ()
@@ -133,14 +133,14 @@ def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
 
 
 def run_feedback(course: 'Course', asked: argparse.Namespace) -> int:
-    """Write the pages of feedback, and say where they lie."""
+    """Write the feedback pages, and print where they are."""
     from grader.cli import hand_back
 
     return hand_back.run_feedback(course, asked)
 
 
 def run_demo(course: 'Course', asked: argparse.Namespace) -> int:
-    """Grade the sample class. 1 where a notebook does not come out as it is named."""
+    """Grade the sample class; return 1 if an outcome is not as the name says."""
     from grader.cli.demo import demo
 
     return 0 if demo(root=course.root) else 1

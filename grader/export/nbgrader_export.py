@@ -1,4 +1,4 @@
-"""What `nbgrader export` writes here: nbgrader's own columns, with what counts today."""
+"""Replace the table of `nbgrader export`: the same columns, with current late penalties."""
 
 from datetime import datetime
 from pathlib import Path
@@ -30,10 +30,10 @@ COLUMNS = (
 
 
 class CsvExport(ExportPlugin):
-    """nbgrader's table, in the place of its CsvExportPlugin.
+    """nbgrader's table, used instead of its CsvExportPlugin.
 
-    That one writes the late penalties of the latest grading, and no quotes: a name with a comma in
-    it moves all that follows into the next column.
+    That plugin writes late penalties as of the last grading, and no quotes: a comma in a name
+    moves all that follows into the next column.
     """
 
     def export(self, gradebook: Gradebook) -> None:
@@ -52,11 +52,11 @@ class CsvExport(ExportPlugin):
             for student in sorted(gradebook.students, key=_named)
             if not students or student.id in students
         ]
-        # programs read this one, and know its first column by nbgrader's name for it
+        # for programs, which know the first column by its name: so without a byte-order mark
         table = spreadsheet_table([COLUMNS, *rows]).removeprefix(BYTE_ORDER_MARK)
         try:
             if path.is_symlink() or (path.exists() and not path.is_file()):
-                # such as /dev/stdout, which stays what it is
+                # for example /dev/stdout, which must not be replaced by a file
                 path.write_text(table, encoding='utf-8', newline='')
             else:
                 write_whole(path, table)
@@ -70,15 +70,15 @@ class CsvExport(ExportPlugin):
         directories = self.parent.coursedir
         root = Path(directories.root)
         course = Course(root, gradebook_of(directories.db_url, root))
-        # another database, such as a backup of it, is shown as it is
+        # another database, for example a backup, is exported as it is
         if directories.db_url.split('?')[0] == course.db_url.split('?')[0]:
             recount_late_penalties(course)
 
 
 def _when_due(assignment: Assignment) -> tuple[bool, datetime, str]:
-    """Return a sort key: nbgrader's order in SQLite, where what has no date comes first.
+    """Return a sort key: nbgrader's order in SQLite, where assignments without a date come first.
 
-    PostgreSQL puts that last, compares names by its locale, and keeps no order of equal ones.
+    PostgreSQL puts them last, compares names by its locale, and does not keep the order of equals.
     """
     due = assignment.duedate
     return due is not None, due or datetime.min, assignment.name
@@ -89,7 +89,7 @@ def _named(student: Student) -> tuple[str, str, str]:
 
 
 def _row(gradebook: Gradebook, assignment: Assignment, student: Student) -> list[object]:
-    """Return what one student has in one assignment: zeros where nothing was handed in."""
+    """Return one student's row for one assignment: zeros if nothing was handed in."""
     timestamp, score, penalty = None, 0.0, 0.0
     try:
         submission = gradebook.find_submission(assignment.name, student.id)

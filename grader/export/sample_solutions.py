@@ -1,4 +1,4 @@
-"""Make the notebooks that a class gets after the deadline: with answers, without hidden tests."""
+"""Make the notebooks for after the deadline: with answers, without hidden tests."""
 
 import re
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ _MARKS = re.compile(rf'^ *### (BEGIN|END) SOLUTION *\n?|^ *{BROKEN}.*\n?', re.MU
 
 
 class ShowSolutions(Preprocessor):
-    """Leave answers as a student would write them: without marks, and without broken lines."""
+    """Show answers as a student would write them: without BEGIN and END lines and broken lines."""
 
     enabled = True
 
@@ -47,11 +47,10 @@ class ShowSolutions(Preprocessor):
 def write_solutions(
     course: Course, assignments: Sequence[str] = (), *, early: bool = False
 ) -> list[Path]:
-    """Write gradebook/solutions/<assignment>.ipynb, for all of them by default; return the paths.
+    """Write gradebook/solutions/<assignment>.ipynb, by default for all; return the paths.
 
-    A ROS package that is an answer lies beside its notebook.
-
-    Raises CourseError, and writes nothing, where somebody may still hand in, unless `early`.
+    A ROS package that is an answer is put beside its notebook. Raises CourseError, and writes
+    nothing, if a student may still hand in, unless `early`.
     """
     wanted = assignments or course.assignments()
     sources = {assignment: course.source(assignment) for assignment in wanted}
@@ -65,7 +64,7 @@ def write_solutions(
         keep_outputs(solved, last_release(course, assignment), sanitizer_of(course))
         paths.append(folder / f'{assignment}.ipynb')
         write_whole(paths[-1], nbformat.writes(solved) + '\n')
-        for package in course.packages(assignment):  # beside the notebook, where it is looked for
+        for package in course.packages(assignment):  # the notebook looks for it beside itself
             place = course.source_path(assignment).parent / package
             package_files.write(package_files.read(place).taken, folder / package)
     return paths

@@ -17,7 +17,8 @@ COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'commen
 def write_scores(course: Course) -> Path:
     """Write gradebook/scores.csv: a row for each student and graded cell; return its path.
 
-    The score is empty where nothing was handed in or a person has to decide; the comment says so.
+    The score is empty if nothing was handed in or if it waits for manual grading; the comment says
+    which.
     """
     path = course.gradebook / 'scores.csv'
     write_whole(path, as_csv(course, records(course)))
@@ -25,7 +26,7 @@ def write_scores(course: Course) -> Path:
 
 
 def as_csv(course: Course, found: Iterable[CellScore]) -> str:
-    """Return the table of some graded cells, with what the checks said of them."""
+    """Return the table of some graded cells, with the reasons of the checks."""
     return spreadsheet_table([COLUMNS, *_rows(course, found)])
 
 
@@ -48,7 +49,7 @@ def _rows(course: Course, found: Iterable[CellScore]) -> Iterator[tuple]:
 
 
 def _comment(record: CellScore, verdict: dict, remark: str) -> str:
-    """Put into words why a cell has its score."""
+    """Explain in words why a cell has its score."""
     if not record.submitted:
         return 'not submitted'
     parts = [

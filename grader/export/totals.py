@@ -14,13 +14,13 @@ from grader.storage.records import CellScore, records
 
 @dataclass(frozen=True)
 class StudentTotal:
-    """What one student has earned so far."""
+    """A student's scores so far."""
 
     student_id: str
     scores: tuple[float | None, ...]
-    """For each assignment, late penalties taken off; None where nothing was handed in."""
+    """For each assignment, with late penalties subtracted; None if nothing was handed in."""
     waiting: int
-    """How many graded cells wait for a person; they count nothing yet."""
+    """How many graded cells wait for manual grading; they count 0 until then."""
 
     @property
     def total(self) -> float:
@@ -30,21 +30,21 @@ class StudentTotal:
 
 @dataclass(frozen=True)
 class Totals:
-    """Students times assignments."""
+    """The scores of all students in all assignments."""
 
     assignments: tuple[str, ...]
     max_scores: tuple[float, ...]
-    """The most that each assignment gives."""
+    """The highest possible score of each assignment."""
     students: tuple[StudentTotal, ...]
 
     @property
     def max_score(self) -> float:
-        """Return the most that the whole course gives."""
+        """Return the highest possible score of the whole course."""
         return sum(self.max_scores)
 
 
 def add_up(found: Iterable[CellScore]) -> Totals:
-    """Add up graded cells, those of assignments that a student did not hand in among them."""
+    """Add up graded cells, including those of assignments that a student did not hand in."""
     by_student: dict[str, dict[str, list[CellScore]]] = defaultdict(lambda: defaultdict(list))
     for record in found:
         by_student[record.student_id][record.assignment].append(record)
@@ -71,7 +71,7 @@ def add_up(found: Iterable[CellScore]) -> Totals:
 def write_totals(course: Course) -> Path:
     """Write gradebook/totals.csv, a row for each student; return its path.
 
-    A score is empty where nothing was handed in; `waiting` counts what a person has to decide.
+    A score is empty if nothing was handed in; `waiting` counts cells that wait for manual grading.
     """
     path = course.gradebook / 'totals.csv'
     write_whole(path, as_csv(add_up(records(course))))

@@ -1,9 +1,9 @@
 """Canvas: the table that its gradebook imports.
 
-It begins with the columns that tell a student, as an export has them, the last of which is
-Section; a column for each assignment follows, headed by its title and number. An empty field
-would take back a score that Canvas has, so that a file is of one assignment and has only rows with
-a score. The row Points Possible is left out: it would change how many points an assignment gives.
+It begins with the columns that identify a student, as in an export, up to Section. A column for
+each assignment follows, with title and number in its heading. An empty field would delete a score
+in Canvas, so each file is for one assignment and has only rows with a score. The row Points
+Possible is left out: it would change how many points an assignment gives.
 """
 
 import re
@@ -29,9 +29,9 @@ HOW = "Take the gradebook's own table: in Canvas, Gradebook, Export, Export Enti
 def make_table(
     course: Course, scores: AssignmentScores, roster_path: Path | None = None
 ) -> ImportFile:
-    """Return what to import into the gradebook; with its export, students and titles are Canvas's.
+    """Return the table to import; with Canvas's export, students and titles are taken from it.
 
-    Raises CourseError where that can't be read, or gives other points.
+    Raises CourseError if the export can't be read, or gives an assignment other points.
     """
     if roster_path is None:
         return table_by_number(
@@ -67,19 +67,19 @@ def make_table(
 
 
 def _column_of(assignment: str, roster: Roster) -> str:
-    """Return the heading of an assignment, '03_publisher (4711)'; its name where there is none."""
+    """Return an assignment's heading, such as '03_publisher (4711)'; its name if there is none."""
     titled = re.compile(rf'{re.escape(assignment)}( \(\d+\))?', re.I)
     found = [heading for heading in roster.headings if titled.fullmatch(heading)]
     return found[0] if found else assignment
 
 
 def _check_points(column: str, scores: AssignmentScores, roster: Roster) -> None:
-    """See that points mean there what they mean here. Raises CourseError."""
+    """Check that the assignment gives as many points in Canvas. Raises CourseError."""
     given = [row.get(column, '') for row in roster.rows if POINTS in row[STUDENT]]
     for text in given:
         try:
             most = float(text.replace(',', '.'))
-        except ValueError:  # no number, as for a column that is new
+        except ValueError:  # not a number, for example if the column is new
             continue
         for each in scores.final[:1]:
             if most != each.max_score:

@@ -1,4 +1,4 @@
-"""What each student has earned in an assignment, where that is final."""
+"""The scores of an assignment that are final."""
 
 from collections import defaultdict
 from collections.abc import Iterable
@@ -10,7 +10,7 @@ from grader.storage.records import CellScore
 
 @dataclass(frozen=True)
 class FinalScore:
-    """What a student has earned in an assignment, late penalties taken off."""
+    """A student's score in an assignment, with late penalties subtracted."""
 
     student_id: str
     score: float
@@ -19,16 +19,16 @@ class FinalScore:
 
 @dataclass(frozen=True)
 class AssignmentScores:
-    """All that can be said of one assignment."""
+    """The scores of one assignment."""
 
     assignment: str
     final: tuple[FinalScore, ...]
     waiting: tuple[str, ...]
-    """Students of whom a person has to decide something first."""
+    """Students of whom a part waits for manual grading."""
 
 
 def final_scores(found: Iterable[CellScore], assignment: str = '') -> list[AssignmentScores]:
-    """Add up graded cells, of one assignment or all, for students who handed something in."""
+    """Add up graded cells, of one assignment or all, for students who handed in."""
     cells: dict[str, dict[str, list[CellScore]]] = defaultdict(lambda: defaultdict(list))
     for each in found:
         if each.submitted and assignment in ('', each.assignment):

@@ -1,4 +1,4 @@
-"""What a course platform imports, before it is written."""
+"""A file for a course platform to import, before it is written."""
 
 from dataclasses import dataclass
 
@@ -11,4 +11,4 @@ class ImportFile:
     rows: int
     """How many students are in it."""
     left_out: tuple[str, ...]
-    """For each student who has a score and is not in it, why."""
+    """For each student who has a score but is not in the table, the reason."""

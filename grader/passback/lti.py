@@ -1,4 +1,4 @@
-"""Send scores to a learning platform by LTI 1.3; what it does not take waits for the next time."""
+"""Send scores to a learning platform by LTI 1.3; those that it does not take are sent again."""
 
 import time
 from collections.abc import Callable
@@ -16,19 +16,18 @@ from grader.storage.records import CellScore, records
 
 @dataclass(frozen=True)
 class LtiOutcome:
-    """What became of the scores."""
+    """The result of sending scores."""
 
     sent: int
     waiting: int
-    """How many the platform is still to get."""
+    """How many scores the platform does not have yet."""
 
 
 def send_scores(course: Course, assignment: str, say: Callable[[str], None]) -> LtiOutcome:
     """Send each final score that the platform does not have, of an assignment or of all.
 
-    `say` gets a line for each student whose score is not sent, with why. Raises CourseError
-    where gradebook/lti.toml is not right, where there is no such assignment, and where nothing of
-    it is graded.
+    `say` gets a line for each student whose score is not sent, with the reason. Raises CourseError
+    if gradebook/lti.toml is wrong, if there is no such assignment, or if nothing of it is graded.
     """
     settings = read_settings(course)
     platform = LtiService(settings)
@@ -43,7 +42,7 @@ def send_scores(course: Course, assignment: str, say: Callable[[str], None]) -> 
 def _to_be_sent(
     found: list[CellScore], assignment: str, settings: LtiSettings, say: Callable[[str], None]
 ) -> list[Score]:
-    """Return the final scores of those whom the platform knows."""
+    """Return the final scores of students who have an id on the platform."""
     now, scores = time.time(), []
     graded = final_scores(found, assignment)
     if assignment and not graded:
@@ -75,7 +74,7 @@ def _send_waiting(
             say(f'the platform is away: {problem}')
             break
         except ScoreRefused as problem:
-            # it has that score: its answer was lost, or this process ended before it came
+            # 409 after an earlier try: the platform has it; its answer was lost or not waited for
             if not (problem.status == CONFLICT and score.tried):
                 queue.note_problem(score, str(problem), answered=True)
                 say(f'{score.assignment}: {score.student_id}: not taken, {problem}')

@@ -1,4 +1,4 @@
-"""A learning platform's Assignment and Grade Services, by pylti1p3."""
+"""A learning platform's Assignment and Grade Services, through pylti1p3."""
 
 import time
 from collections.abc import Mapping
@@ -22,21 +22,21 @@ from grader.passback.lti_settings import LtiSettings
 AGS = 'https://purl.imsglobal.org/spec/lti-ags/scope'
 SCOPES = [f'{AGS}/lineitem', f'{AGS}/score']
 TIMEOUT = (10.0, 30.0)
-"""For a connection, and between two bytes of an answer, in seconds."""
+"""Seconds to connect, and between two bytes of an answer."""
 EARLY = 30.0
-"""How long before its end a token is used no more, in seconds."""
+"""Seconds before its expiry from which a token is no longer used."""
 CONFLICT = 409
 UNAUTHORISED = (401, 403)
 LATER = (408, 425, 429)
-"""What a platform answers that wants to be asked again, as with any status from 500 on."""
+"""Status codes after which to try again later, as after any from 500 on."""
 
 
 class PlatformIsAway(Exception):
-    """Nobody answers, or the answer is no answer: nothing can be sent for now."""
+    """The platform does not answer, or not validly: nothing can be sent for now."""
 
 
 class ScoreRefused(Exception):
-    """The platform answers, and does not take this score."""
+    """The platform has answered, and does not take this score."""
 
     def __init__(self, why: str, status: int) -> None:
         super().__init__(why)
@@ -45,7 +45,7 @@ class ScoreRefused(Exception):
 
 @dataclass
 class _Connector(ServiceConnector):
-    """Keeps a token as long as it is valid, and waits for no answer without end."""
+    """Keeps a token while it is valid; its requests have a time limit."""
 
     registration: Registration
     tokens: dict[str, tuple[str, float]] = field(default_factory=dict)
@@ -63,7 +63,7 @@ class _Connector(ServiceConnector):
 
 
 class _Session(requests.Session):
-    """Asks with a time limit, and follows to no other address."""
+    """Sends requests with a time limit, and does not follow redirects."""
 
     def request(self, *arguments: Any, **options: Any) -> requests.Response:
         return super().request(
@@ -72,10 +72,10 @@ class _Session(requests.Session):
 
 
 class LtiService:
-    """What takes scores. Each call may raise PlatformIsAway or ScoreRefused."""
+    """Sends scores to the platform. Each call may raise PlatformIsAway or ScoreRefused."""
 
     def __init__(self, settings: LtiSettings) -> None:
-        """Prepare to ask; nothing is sent yet. Raises CourseError where the key is damaged."""
+        """Prepare requests; nothing is sent yet. Raises CourseError if the key is damaged."""
         registration = Registration()
         registration.set_issuer(settings.issuer).set_client_id(settings.client_id)
         registration.set_auth_token_url(settings.token_url)
@@ -89,7 +89,7 @@ class LtiService:
         self._columns: dict[str, LineItem] = {}
 
     def send(self, score: Score) -> None:
-        """Give the platform a score; make the assignment's column where there is none."""
+        """Send a score to the platform; create the assignment's column if there is none."""
         changed = datetime.fromtimestamp(score.changed, UTC).isoformat(timespec='milliseconds')
         grade = Grade().set_user_id(score.user_id).set_timestamp(changed)
         grade.set_score_given(max(score.score, 0.0)).set_score_maximum(score.max_score)
@@ -101,7 +101,7 @@ class LtiService:
         except (requests.RequestException, LtiException) as error:
             raise PlatformIsAway(_in_a_line(error)) from None
         except (ValueError, TypeError, LookupError, AttributeError) as error:
-            # the library trusts the form of what comes
+            # the library does not check the form of answers
             raise PlatformIsAway(
                 f'an answer of another form than LTI has ({_in_a_line(error)})'
             ) from None
@@ -129,17 +129,17 @@ class LtiService:
 
 
 def public_key(private_key: str) -> str:
-    """Return the public part of a key, in PEM. Raises CourseError where it is damaged."""
+    """Return the public part of a key, in PEM. Raises CourseError if the key is damaged."""
     try:
         key = serialization.load_pem_private_key(private_key.encode(), password=None)
-    except (ValueError, TypeError) as error:  # TypeError where it has a password
+    except (ValueError, TypeError) as error:  # TypeError if the key has a password
         raise CourseError(f'the key of lti.toml is damaged: {_in_a_line(error)}') from None
     form = serialization.PublicFormat.SubjectPublicKeyInfo
     return key.public_key().public_bytes(serialization.Encoding.PEM, form).decode()
 
 
 def public_jwk(private_key: str) -> Mapping[str, Any]:
-    """Return the public part of a key as platforms take it that want a JWK."""
+    """Return the public part of a key as JWK, for platforms that require this form."""
     return Registration.get_jwk(public_key(private_key))
 
 

@@ -1,7 +1,7 @@
-"""Which scores a platform has and which it is still to get: a table that survives any process.
+"""The scores that a platform has, or is still to get, in a table that survives a crash.
 
-A score waits from when it changes until the platform has said that it has it. What was tried is
-noted before it is sent: an answer that was lost is told from a score that the platform refuses.
+A score waits from its change until the platform has confirmed it. Each try is recorded before the
+score is sent: so a lost answer can be distinguished from a refused score.
 """
 
 import sqlite3
@@ -15,7 +15,7 @@ FILE = 'lti.db'
 
 @dataclass(frozen=True)
 class Score:
-    """What a student has in an assignment, for the platform."""
+    """A student's score in an assignment, for the platform."""
 
     student_id: str
     assignment: str
@@ -23,11 +23,11 @@ class Score:
     score: float
     max_score: float
     changed: float
-    """When it came to be so, in seconds since 1970; the platform keeps the newest."""
+    """When the score changed, in Unix time; the platform keeps the newest one."""
     tried: bool = False
-    """Whether it was sent before, and no answer came."""
+    """Whether it was sent before without an answer."""
     problem: str = ''
-    """Why it was not taken when it was sent last."""
+    """Why it was not taken at the last try."""
 
 
 _COLUMNS = tuple(field.name for field in fields(Score))
@@ -46,9 +46,10 @@ class LtiQueue:
         self._database = database
 
     def note(self, scores: Iterable[Score]) -> None:
-        """Let those scores wait that are not as they were; a change takes the place of an older.
+        """Queue those scores that have changed; a change replaces an earlier one.
 
-        Each change is later than the one before, whatever the clock says.
+        The time of each change is later than that of the previous one, even if the clock was set
+        back.
         """
         with self._database:
             for each in scores:
@@ -64,7 +65,7 @@ class LtiQueue:
                 self._database.execute(f'REPLACE INTO scores VALUES ({_marks(row)})', row)
 
     def waiting(self, assignment: str = '') -> list[Score]:
-        """Return what the platform has not taken yet, the oldest change first."""
+        """Return the scores that the platform does not have yet, the oldest change first."""
         rows = self._database.execute(
             f'SELECT {", ".join(_COLUMNS)} FROM scores WHERE NOT sent AND ? IN ("", assignment) '
             'ORDER BY changed, student_id',
@@ -73,15 +74,15 @@ class LtiQueue:
         return [Score(*row) for row in rows]
 
     def note_try(self, score: Score) -> None:
-        """Note that a score is about to be sent."""
+        """Record that a score is about to be sent."""
         self._set(score, 'tried = 1')
 
     def note_sent(self, score: Score) -> None:
-        """Note that the platform has a score, unless that has changed since."""
+        """Record that the platform has a score, unless the score has changed since."""
         self._set(score, "sent = 1, tried = 0, problem = ''")
 
     def note_problem(self, score: Score, problem: str, *, answered: bool) -> None:
-        """Note why a score waits on; `answered` where the platform itself refused it."""
+        """Record why a score still waits; `answered` if the platform itself refused it."""
         self._set(score, f'problem = ?{", tried = 0" if answered else ""}', problem)
 
     def _set(self, score: Score, assigned: str, *values: str) -> None:
@@ -98,8 +99,8 @@ def _marks(row: tuple[object, ...]) -> str:
 
 @contextmanager
 def opened_lti_queue(gradebook: Path) -> Iterator[LtiQueue]:
-    """Open the table of a gradebook; make it where there is none."""
+    """Open the table of a gradebook; make it if there is none."""
     with closing(sqlite3.connect(gradebook / FILE, timeout=60)) as database:
-        database.execute('PRAGMA synchronous = FULL')  # after a power cut, too
+        database.execute('PRAGMA synchronous = FULL')  # survives a power cut, too
         database.executescript(_SCHEMA)
         yield LtiQueue(database)

@@ -1,17 +1,17 @@
-"""How a learning platform is reached by LTI 1.3: gradebook/lti.toml.
+"""Settings for a learning platform with LTI 1.3, from gradebook/lti.toml.
 
     issuer = "https://moodle.example.org"
     client_id = "AbC123"
     token_url = "https://moodle.example.org/mod/lti/token.php"
     lineitems = "https://moodle.example.org/mod/lti/services.php/2/lineitems?type_id=1"
     key_file = "lti_key.pem"       # our private key, beside this file
-    audience = "…"                 # where the platform wants another one than the token_url
-    students_are_user_ids = true   # our names of students are the platform's ids of users
+    audience = "…"                 # if the platform requires another one than the token_url
+    students_are_user_ids = true   # if our student IDs are the platform's user ids
 
-    [user_ids]                     # the platform's id (sub) of each student, if they are not
+    [user_ids]                     # otherwise: the platform's id (sub) of each student
     ada = "4711"
 
-docs/lti.md says where a platform shows each of them.
+docs/lti.md says where a platform shows each of these values.
 """
 
 import tomllib
@@ -33,13 +33,13 @@ LOCAL = ('localhost', '127.0.0.1', '::1')
 
 @dataclass(frozen=True)
 class LtiSettings:
-    """What a platform said when the course was registered with it."""
+    """The values that a platform gave when the course was registered with it."""
 
     issuer: str
     client_id: str
     token_url: str
     lineitems: str
-    """Where the platform keeps the columns of its gradebook for this course."""
+    """The URL of this course's columns in the platform's gradebook."""
     key: str = field(repr=False)
     """Our private key, in PEM."""
     audience: str = ''
@@ -52,7 +52,7 @@ class LtiSettings:
 
 
 def read_settings(course: Course) -> LtiSettings:
-    """Return what gradebook/lti.toml says. Raises CourseError with what is wrong in it."""
+    """Read gradebook/lti.toml. Raises CourseError if something in it is wrong."""
     path = course.gradebook / FILE
     try:
         table = tomllib.loads(path.read_text(encoding='utf-8'))
@@ -90,7 +90,7 @@ def _problem_in(table: dict[str, Any]) -> str:
 
 
 def _read_key(path: Path) -> str:
-    """Return the private key. Raises CourseError where others may read it, or it is none."""
+    """Return the private key. Raises CourseError if others may read it, or if it is not a key."""
     try:
         key = path.read_text(encoding='ascii')
         mode = path.stat().st_mode & 0o777

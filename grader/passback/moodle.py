@@ -1,8 +1,8 @@
 """Moodle: the grading worksheet of an assignment, and the archive of feedback files.
 
-The worksheet is what *Download grading worksheet* writes and *Upload grading worksheet* reads. It
-names a student by the participant number that stands in each name of *Download all submissions*,
-and is read with the headings of the site's language: these are the English ones.
+*Download grading worksheet* writes a worksheet, and *Upload grading worksheet* reads one. It
+identifies a student by the participant number that is in each name of *Download all submissions*.
+Its headings are in the site's language: these are the English ones.
 """
 
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ MAXIMUM, MODIFIED = 'Maximum Grade', 'Last modified (grade)'
 NEEDED = (IDENTIFIER, FULL_NAME, GRADE, MODIFIED)
 PARTICIPANT = 'Participant '
 NEVER = '-'
-"""Moodle's word for a grade that nobody has given: then a later one of Moodle's stays."""
+"""Moodle's text for a grade that was never given: a newer grade in Moodle is then kept."""
 HOW = (
     "Take the assignment's grading worksheet: in Moodle, in English, turn on Offline grading "
     'worksheet in its settings, and choose Download grading worksheet'
@@ -32,9 +32,9 @@ HOW = (
 def make_worksheet(
     course: Course, scores: AssignmentScores, roster_path: Path | None = None
 ) -> ImportFile:
-    """Return what to upload as a grading worksheet; with Moodle's own, its columns stay.
+    """Return a grading worksheet to upload; if Moodle's own is given, its columns are kept.
 
-    Raises CourseError where that can't be read, or has another maximum.
+    Raises CourseError if that can't be read, or has another maximum.
     """
     if roster_path is None:
         return table_by_number(
@@ -71,10 +71,10 @@ def make_worksheet(
 def _check_maximum(
     row: Mapping[str, str], score: FinalScore, assignment: str, roster: Roster
 ) -> None:
-    """See that points mean there what they mean here. Raises CourseError."""
+    """Check that the assignment has the same maximum in Moodle. Raises CourseError."""
     try:
         most = float(row.get(MAXIMUM, '').replace(',', '.'))
-    except ValueError:  # a worksheet without it, or a scale instead of points
+    except ValueError:  # a worksheet without a maximum, or with a scale instead of points
         return
     if most != score.max_score:
         raise CourseError(
@@ -85,8 +85,8 @@ def _check_maximum(
 
 
 def name_feedback_file(student_id: str, number: str, assignment: str) -> str:
-    """Return a name from which *Upload multiple feedback files in a zip* knows the student.
+    """Return a name by which *Upload multiple feedback files in a zip* identifies the student.
 
-    Moodle takes a name apart at underscores, so the student's own become spaces.
+    Moodle splits the name at underscores, so those of the student's name become spaces.
     """
     return f'{student_id.replace("_", " ")}_{number}_assignsubmission_file_{assignment}.html'

@@ -1,4 +1,4 @@
-"""A table for a platform without a roster: the numbers that came with work say whose a row is."""
+"""Make a platform's table without a roster, with the numbers that came with the submissions."""
 
 from collections.abc import Callable, Sequence
 
@@ -18,10 +18,10 @@ def table_by_number(
     headings: Sequence[str],
     row_of: Callable[[FinalScore, str], list[object]],
 ) -> ImportFile:
-    """Return a table of those students whose number on a platform, 'Moodle' say, is known.
+    """Return a table of the students whose number on a platform, such as 'Moodle', is known.
 
-    `download` is what the platform calls the archive that has the numbers in its names; `row_of`
-    makes the row of a student from the score and the number.
+    `download` is the platform's name for the archive that has the numbers in its file names;
+    `row_of` makes the row of a student from the score and the number.
     """
     numbers = StudentNumbers(course)
     rows: list[list[object]] = [list(headings)]

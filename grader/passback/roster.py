@@ -1,4 +1,4 @@
-"""A table that a course platform exported: its columns and rows, and whose each row is."""
+"""Read a table that a course platform exported, and find the row of each student."""
 
 import csv
 import io
@@ -22,9 +22,9 @@ class Roster:
 
 
 def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
-    """Read a table in CSV, of commas or semicolons.
+    """Read a CSV table, separated by commas or semicolons.
 
-    Raises CourseError where it is none or lacks a column; `how` says where to get the right one.
+    Raises CourseError if it is not one or lacks a column; `how` says how to get the right file.
     """
     try:
         raw = path.read_bytes()
@@ -45,19 +45,19 @@ def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
         raise CourseError(f'{path} has no column {", ".join(map(repr, lacks))}. {how}')
     if len(set(headings)) < len(headings):
         raise CourseError(f'{path} has two columns of one name. {how}')
-    none = dict.fromkeys(headings, '')  # a line may end early: nothing is in its other columns
+    none = dict.fromkeys(headings, '')  # a line may end early: its other columns are empty
     rows = [none | dict(zip(headings, line, strict=False)) for line in lines[1:] if any(line)]
     return Roster(path, headings, tuple(rows))
 
 
 @dataclass(frozen=True)
 class Matches:
-    """Whose rows of a roster are."""
+    """The rows of students in a roster."""
 
     rows: Mapping[str, Mapping[str, str]]
-    """By student."""
+    """By student ID."""
     unclear: tuple[str, ...]
-    """For each student without a row, why."""
+    """For each student without a row, the reason."""
 
 
 def match(
@@ -67,9 +67,9 @@ def match(
     by_number: Callable[[str, Mapping[str, str]], bool],
     name_of: Callable[[Mapping[str, str]], str],
 ) -> Matches:
-    """Find each student's row: the one with the student's number, else the only one of that name.
+    """Find each student's row: that with the student's number, else the only one with that name.
 
-    A row is nobody's where two students may be meant by it.
+    A row that may belong to two students is given to neither.
     """
     candidates = {
         student: [row for row in roster.rows if by_number(student, row)]

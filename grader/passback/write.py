@@ -1,4 +1,4 @@
-"""Write what course platforms import, a file for each assignment, under gradebook/PLATFORM/."""
+"""Write files that course platforms import, one for each assignment, to gradebook/PLATFORM/."""
 
 import zipfile
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from grader.passback.final_scores import final_scores
 from grader.storage.records import records
 
 TABLES = {'moodle': moodle.make_worksheet, 'canvas': canvas.make_table}
-"""Platforms that import scores, and what makes the table for each."""
+"""Platforms that import scores, with the function that makes the table."""
 
 
 def write_platform_scores(
@@ -26,8 +26,8 @@ def write_platform_scores(
 ) -> list[Path]:
     """Write the final scores of an assignment, or of all; return the paths.
 
-    An assignment without a row has no file. `say` gets a line for each student who is in none of
-    them, with why. Raises CourseError where the roster doesn't fit, or nothing is graded.
+    An assignment without a row gets no file. `say` gets a line for each student without a row,
+    with the reason. Raises CourseError if the roster does not fit, or if nothing is graded.
     """
     found = final_scores(records(course), assignment)
     if assignment and not found:
@@ -55,9 +55,9 @@ def write_platform_scores(
 
 
 def write_feedback_archives(course: Course, say: Callable[[str], None]) -> list[Path]:
-    """Pack the pages of feedback for Moodle, an archive for each assignment; return the paths.
+    """Pack the feedback pages for Moodle, an archive for each assignment; return the paths.
 
-    `say` gets a line for each page that is in none of them.
+    `say` gets a line for each page that is left out.
     """
     numbers = StudentNumbers(course)
     pages: dict[str, dict[str, Path]] = {}
