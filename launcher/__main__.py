@@ -4,11 +4,11 @@ import os
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-# behind the standard library: a file in the course's folder replaces no module of it
+# after the standard library: a file in the course's folder must not replace a module of it
 sys.path[:] = [*sys.path[1:], ROOT]
 
 if sys.argv[1:] == ['--is-set-up']:
-    from launcher.made import is_set_up  # each call asks: with nothing of what comes then
+    from launcher.made import is_set_up  # every call runs this, so it imports nothing else
 
     sys.exit(not is_set_up(ROOT))
 

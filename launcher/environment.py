@@ -1,4 +1,4 @@
-"""Where the course and its `.venv` lie, and the variables that what runs in it sees."""
+"""The paths of the course and its `.venv`, and the environment variables for what runs in it."""
 
 import os
 from collections.abc import Mapping
@@ -26,21 +26,21 @@ FOREIGN += ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_SECURITY_ENABLE', 'RMW_IMPLEME
 FOREIGN += ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 FOREIGN += ('FASTDDS_BUILTIN_TRANSPORTS', 'RCUTILS_CONSOLE_OUTPUT_FORMAT')
 FOREIGN += ('_ROS_WHEELS_BOOTSTRAP_COMPLETE',)
-"""Variables of the user's Python and of a robot's ROS: they would mix with what .venv brings."""
+"""Variables of the user's Python and of another ROS installation, which would affect .venv."""
 PREFIXES = ('AMENT_PREFIX_PATH', 'COLCON_PREFIX_PATH', 'CMAKE_PREFIX_PATH')
-"""Variables that list where a ROS sourced in the caller's shell lies."""
+"""Variables that list the prefixes of a ROS installation sourced in the caller's shell."""
 
 
 class Environment:
-    """A checkout of the course, or a student's bundle."""
+    """A checkout of the course, or a student's bundle, with its `.venv`."""
 
     def __init__(self, root: Path) -> None:
-        """Take the folder that has everything."""
+        """Take the root folder."""
         self.root = root
 
     @property
     def venv(self) -> Path:
-        """Where everything is installed."""
+        """The virtual environment in which everything is installed."""
         return self.root / '.venv'
 
     @property
@@ -54,7 +54,7 @@ class Environment:
         return (self.root / 'grader').is_dir()
 
     def outside(self, variables: Mapping[str, str]) -> dict[str, str]:
-        """Return the caller's variables without other environments': what installers see."""
+        """Return the caller's variables without those of other environments, for installers."""
         foreign = {str(self.venv), '/opt/ros'}
         for name in PREFIXES:
             foreign.update(filter(None, variables.get(name, '').split(os.pathsep)))
@@ -66,7 +66,7 @@ class Environment:
         return kept
 
     def variables(self, variables: Mapping[str, str]) -> dict[str, str]:
-        """Return the variables with which a verb runs."""
+        """Return the environment variables for a verb."""
         inside = self.outside(variables)
         inside |= {
             'VIRTUAL_ENV': str(self.venv),
@@ -74,19 +74,19 @@ class Environment:
             'AMENT_PREFIX_PATH': str(self.venv),
             'RCUTILS_LOGGING_USE_STDOUT': '1',
             'RCUTILS_COLORIZED_OUTPUT': '0',
-            # a kernel that the user once installed as python3 does not replace ours
+            # a kernelspec python3 in the user's home must not replace ours
             'JUPYTER_PREFER_ENV_PATH': '1',
-            # tutorials use this name, too: the user's is another
+            # ROS tutorials use this name, too, for the user's own workspace
             'ROS_WS': variables.get('MY_ROBOT_BASICS_WORKSPACE') or str(self.root / 'ros_ws'),
         }
         if ' ' in str(self.venv):
-            # colcon's setup.bash stumbles over a space in its Python's path; any Python serves it
+            # colcon's setup.bash fails if its Python's path has a space; it works with any Python
             inside['COLCON_PYTHON_EXECUTABLE'] = str(self.python.resolve())
         return inside
 
 
 def without_foreign(folders: str, foreign: set[str]) -> str:
-    """Return a list of folders without those that lie in a foreign prefix."""
+    """Return a list of folders without those inside a foreign prefix."""
     kept = []
     for folder in filter(None, folders.split(os.pathsep)):
         above = {folder, folder.rstrip('/'), *map(str, Path(folder).parents)}

@@ -1,4 +1,4 @@
-"""`./course hub`: one student's server on a JupyterHub, which starts it (`deploy/jupyterhub/`)."""
+"""`./course hub`: a student's server, started by a JupyterHub (`deploy/jupyterhub/`)."""
 
 import json
 import os
@@ -12,16 +12,16 @@ from launcher.languages import choose_language, languages, write_settings
 from launcher.messages import LauncherError
 
 FOLDER = 'lessons'
-"""In the student's home: the root of JupyterLab. The course itself is read-only there."""
+"""In the student's home: JupyterLab's root folder. The course itself is read-only there."""
 MADE = '.local/share/my_robot_basics/jupyterlab'
 PAGE, DISABLED = 'page_config.json', 'disabledExtensions'
 HANDS_IN = ('@jupyter/nbgrader:assignment-list', '@jupyter/nbgrader:menu')
-"""What students fetch, submit and read feedback with. On a laptop, there is no exchange for it."""
+"""Extensions to fetch, submit and read feedback. A laptop has no exchange for them."""
 SERVER = 'jupyterhub'
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
-    """Become the server. Raises LauncherError where no hub has started this."""
+    """Become the server. Raises LauncherError if it was not started by a hub."""
     if 'JUPYTERHUB_SERVICE_URL' not in variables:
         raise LauncherError(
             'no JupyterHub has started this, expected one: ./course lab opens the lessons, and '
@@ -40,16 +40,16 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
     os.chdir(lessons)
     command = [str(environment.python), '-P', '-m', 'jupyterhub.singleuser']
     command += options(lessons, language, hub_settings(environment, language, home / MADE))
-    # the hub sends a student to the server's own page
+    # the hub redirects a student to the server's default page
     command += [f'--ServerApp.default_url={first_page(language)}', *arguments]
     sys.stdout.flush()
     os.execve(command[0], command, variables)
 
 
 def copy_pages(released: Path, lessons: Path) -> Path:
-    """Copy the pages beside the lessons that are missing in a student's folder; return that.
+    """Copy pages that are missing in a student's folder, but not lessons; return the folder.
 
-    A lesson itself comes with Assignment List, once the instructor has released it.
+    Lessons come through Assignment List, when the instructor has released them.
     """
     for folder in (released, *(released / each for each in languages(released))):
         target = lessons / folder.relative_to(released)

@@ -1,4 +1,4 @@
-"""Login from a learning platform: the library checks what it signed, lti_users whom that means."""
+"""Login from a learning platform: the library verifies claims, lti_users maps them to users."""
 
 from typing import Any
 
@@ -9,14 +9,14 @@ from traitlets import Instance
 
 
 class PlatformAuthenticator(LTI13Authenticator):
-    """Lets in users of this machine whom the platform names."""
+    """Lets users of this machine in if the platform sends them."""
 
     login = Instance(LtiLogin, help='The table [lti] of class.toml.').tag(config=True)
-    # there is no way in from here: the login page would have a button that leads to an error
+    # without the platform nobody can log in; the default page has a button that leads to an error
     custom_html = '<h1>Follow the link to this hub in your course on the learning platform.</h1>'
 
     async def authenticate(self, handler: Any, data: dict[str, Any] | None = None) -> str:
-        """Return the user's name, from claims that are checked. Raises HTTPError 403."""
+        """Return the user's name from verified claims. Raises HTTPError 403."""
         try:
             return self.login.user_of(data or {})
         except LoginRefused as refusal:

@@ -1,7 +1,7 @@
-"""Which user of this machine a learning platform's person is: the table [lti] of class.toml.
+"""Map a person of a learning platform to a user of this machine: the table [lti] of class.toml.
 
-The platform is trusted, and signs what it says of a person. What that person wrote about
-themselves in there is not: docs/lti.md says which claims that concerns.
+The platform is trusted, and signs what it says about a person. What people wrote about themselves
+there is not trusted: docs/lti.md says which claims that concerns.
 """
 
 import grp
@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 CLAIM = 'https://purl.imsglobal.org/spec/lti/claim/'
 INSTRUCTOR = 'http://purl.imsglobal.org/vocab/lis/v2/membership#Instructor'
 CUSTOM = 'custom_'
-"""Begins the name of a parameter that the platform was told to send, as in the library."""
+"""Prefix of a parameter that the platform was told to send, as in the library."""
 TEXTS = ('issuer', 'authorize_url', 'jwks_endpoint')
 OTHERS = ('client_id', 'username_claim', 'email_domain', 'context_id', 'user_ids')
 SELF_CHOSEN = (
@@ -28,34 +28,34 @@ SELF_CHOSEN = (
 )
 LOCAL = ('localhost', '127.0.0.1', '::1')
 LONGEST = 100
-"""Characters of what was received that a refusal repeats."""
+"""How many characters of a received value a refusal repeats."""
 
 
 class LoginRefused(Exception):
-    """Whom the platform sent has no account here; the text says what came, and what to do."""
+    """The person whom the platform sent has no account here; the text says what to do."""
 
 
 @dataclass(frozen=True)
 class LtiLogin:
-    """The table [lti], and whom it may let in."""
+    """The table [lti], and the users whom it may let in."""
 
     issuer: str
     authorize_url: str
     jwks_endpoint: str
     client_id: frozenset[str]
     students: str
-    """The group of those who may log in."""
+    """The group of users who may log in."""
     instructor: str
     username_claim: str = f'{CUSTOM}username'
     email_domain: str = ''
-    """Where the claim is an address, the one domain whose addresses name users."""
+    """If the claim is an e-mail address: the only domain whose addresses name users."""
     context_id: str = ''
-    """The platform's id of the course, where no other one may send anybody."""
+    """The platform's id of the course, if no other course may send users."""
     user_ids: Mapping[str, str] = field(default_factory=dict)
-    """The platform's id (sub) of each user; no claim is read then."""
+    """The platform's id (sub) of each user; if set, no other claim is used."""
 
     def user_of(self, claims: Mapping[str, Any]) -> str:
-        """Return the user whom checked claims mean. Raises LoginRefused."""
+        """Return the user whom verified claims name. Raises LoginRefused."""
         context = _inner(claims, 'context').get('id')
         if self.context_id and context != self.context_id:
             raise LoginRefused(
@@ -71,7 +71,7 @@ class LtiLogin:
                 f'The platform sent {received}, which is the instructor, and did not say that '
                 'you teach this course: tell the instructor, whose role there is Instructor.'
             )
-        # JupyterHub would turn Ada into ada, who may be somebody else
+        # JupyterHub would turn Ada into ada, who may be another person
         if name != name.lower() or not is_member(name, self.students):
             raise LoginRefused(
                 f'The platform sent {received}, and no user of this machine in the group '
@@ -96,7 +96,7 @@ class LtiLogin:
         value = found.get(claim.removeprefix(CUSTOM) if custom else claim)
         received = f'{claim} = {_shown(value)}'
         if not isinstance(value, str) or not value:
-            # the library would take sub in its place, another name space
+            # the library would use sub instead, which has other names
             raise LoginRefused(
                 f'The platform sent {received}, expected your name: ask the instructor to let the '
                 'platform send that claim, as docs/lti.md says.'
@@ -113,7 +113,7 @@ class LtiLogin:
 
 
 def read_login(settings: Mapping[str, Any]) -> LtiLogin:
-    """Return the table [lti] of class.toml. Raises ValueError with what is wrong in it."""
+    """Return the table [lti] of class.toml. Raises ValueError if something in it is wrong."""
     table = dict(settings['lti'])
     if problem := _problem_in(table):
         raise ValueError(f'class.toml, [lti]: {problem} (docs/lti.md shows one that is right)')
@@ -123,10 +123,10 @@ def read_login(settings: Mapping[str, Any]) -> LtiLogin:
 
 
 def is_member(name: str, group: str) -> bool:
-    """Whether this machine has such a user, in such a group."""
+    """Whether this machine has such a user, and the user is in the group."""
     try:
         return grp.getgrnam(group).gr_gid in os.getgrouplist(name, pwd.getpwnam(name).pw_gid)
-    except (KeyError, ValueError):  # a name with a null byte is no name
+    except (KeyError, ValueError):  # ValueError: a name with a null byte
         return False
 
 

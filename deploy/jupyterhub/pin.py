@@ -1,6 +1,6 @@
 """Pin what the hub and its servers need, with hashes: `.venv/bin/python deploy/jupyterhub/pin.py`.
 
-Writes hub.txt and server.txt, the second without what environment.txt has. The proxy is pinned in
+It writes hub.txt and server.txt; server.txt omits what environment.txt has. The proxy is pinned in
 package-lock.json, by `npm install --package-lock-only --omit-lockfile-registry-resolved`.
 """
 
@@ -13,7 +13,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 COURSE = HERE.parents[1] / 'environment.txt'
 WHOLE_PIN = re.compile(r'^(?=\w)', re.MULTILINE)
-"""Between two pins, each with its lines of hashes."""
+"""Matches the beginning of each pin, which includes its lines of hashes."""
 
 
 def main() -> None:
@@ -25,17 +25,17 @@ def main() -> None:
 
 
 def pins_in(text: str) -> list[str]:
-    """Return each pin of a file of requirements, with its hashes."""
+    """Return each pin of a requirements file, with its hashes."""
     return [part for part in WHOLE_PIN.split(text) if '==' in part.partition('\n')[0]]
 
 
 def name_of(pin: str) -> str:
-    """Return the package of a pin."""
+    """Return the name of the package in a pin."""
     return pin.partition('==')[0]
 
 
 def resolve(wanted: str, constraints: Path | None = None) -> list[str]:
-    """Return the pins that uv finds for a file, with the versions that another one pins."""
+    """Return the pins that uv finds for a file, constrained to the versions in another file."""
     uv = [Path(sys.prefix, 'bin/uv'), 'pip', 'compile', '--quiet', '--universal', wanted]
     uv += ['--python-version', '3.11', '--generate-hashes', '--no-header', '--no-annotate']
     with tempfile.NamedTemporaryFile('w', suffix='.txt') as file:

@@ -1,7 +1,7 @@
-"""Process 1 of a student's room: starts their server, and passes connections of the hub to it.
+"""Process 1 of a student's room: it starts the server, and relays the hub's connections to it.
 
 `python room.py DESCRIPTOR PORT COMMAND...`. The descriptor is a listening socket that the spawner
-opened outside: what connects there reaches 127.0.0.1:PORT in here, where the server listens.
+opened outside: connections to it are relayed to 127.0.0.1:PORT in the room, where the server is.
 """
 
 import asyncio
@@ -13,11 +13,11 @@ import sys
 
 CHUNK_BYTES = 65_536
 STOP_GRACE_SEC = 10.0
-"""A server that was told to end has so long for its kernels."""
+"""How long a server that was told to end may take to end its kernels."""
 
 
 async def pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-    """Write what is read, until one of the two sides is gone."""
+    """Copy data until one of the two sides is closed."""
     try:
         while chunk := await reader.read(CHUNK_BYTES):
             writer.write(chunk)
@@ -28,12 +28,12 @@ async def pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) ->
 
 
 async def relay(listening: socket.socket, port: int) -> asyncio.Server:
-    """Begin to pass each connection on to 127.0.0.1:port, both ways; return what does it."""
+    """Relay each connection to 127.0.0.1:port, in both directions; return the asyncio server."""
 
     async def join(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:
             inside = await asyncio.open_connection('127.0.0.1', port)
-        except OSError:  # not up yet, or gone: the hub asks again
+        except OSError:  # the server is not up yet, or gone: the hub tries again
             writer.close()
             return
         await asyncio.gather(pass_on(reader, inside[1]), pass_on(inside[0], writer))
@@ -44,7 +44,7 @@ async def relay(listening: socket.socket, port: int) -> asyncio.Server:
 
 
 def bury(server: subprocess.Popen[bytes]) -> int | None:
-    """Reap what has ended, orphans too; return the exit code of the server once it has one."""
+    """Reap ended processes, orphans too; return the server's exit code when it has ended."""
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)
@@ -57,14 +57,14 @@ def bury(server: subprocess.Popen[bytes]) -> int | None:
 
 
 async def run(descriptor: int, port: int, command: list[str]) -> int:
-    """Run the server until it ends, or is told to; return its exit code."""
+    """Run the server until it ends or this process is told to end; return its exit code."""
     loop = asyncio.get_running_loop()
     ended: asyncio.Future[int] = loop.create_future()
     told = asyncio.Event()
-    # before the server is started: from then on somebody may tell this process to end
+    # before the server starts: from then on a signal to end may arrive
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, told.set)
-    # the listening socket stays with process 1: student code has no use for it
+    # only process 1 keeps the listening socket: student code does not need it
     os.set_inheritable(descriptor, False)
     server = subprocess.Popen(command, start_new_session=True)
 
@@ -82,7 +82,7 @@ async def run(descriptor: int, port: int, command: list[str]) -> int:
     if not ended.done():
         server.terminate()
         await asyncio.wait([ended], timeout=STOP_GRACE_SEC)
-    relaying.close()  # browsers stay connected until they are cut off: nobody waits for them
+    relaying.close()  # do not wait for browsers, which stay connected until they are cut off
     return ended.result() if ended.done() else 1
 
 

@@ -1,4 +1,4 @@
-"""A spawner that gives each student's whole server a room of its own, made by bubblewrap."""
+"""A spawner that runs each student's whole server in a room of its own, made by bubblewrap."""
 
 import asyncio
 import json
@@ -16,11 +16,11 @@ from walls import Room, bubblewrap
 INSIDE = Path(__file__).with_name('room.py')
 START_TIMEOUT_SEC = 60.0
 OWN_FRAMES = {'headers': {'Content-Security-Policy': "frame-ancestors 'self'"}}
-"""JupyterLab shows the formgrader in a frame, which JupyterHub forbids where nothing is said."""
+"""JupyterLab shows the formgrader in a frame, which JupyterHub's default policy forbids."""
 
 
 class RoomSpawner(LocalProcessSpawner):
-    """Starts servers as LocalProcessSpawner does, and a student's in a room of its own."""
+    """Starts servers as LocalProcessSpawner does, but a student's in a room."""
 
     server_cmd = Command(help="What becomes a student's server.").tag(config=True)
     instructors = Dict(help='Who has no room, and the checkout to work in.').tag(config=True)
@@ -29,7 +29,7 @@ class RoomSpawner(LocalProcessSpawner):
     shown = List(help='What else students may read.').tag(config=True)
 
     async def start(self) -> tuple[str, int]:
-        """Start a server; return where the proxy reaches it."""
+        """Start a server; return the address where the proxy reaches it."""
         if checkout := self.instructors.get(self.user.name):
             python = f'{checkout}/.venv/bin/python'
             server = [python, '-P', '-m', 'jupyterhub.singleuser']
@@ -39,14 +39,14 @@ class RoomSpawner(LocalProcessSpawner):
         return await self.start_in_room()
 
     async def start_in_room(self) -> tuple[str, int]:
-        """Start a server in a room. Raises RuntimeError where none could be made."""
+        """Start a server in a room. Raises RuntimeError if the room could not be made."""
         room = Room(
             home=Path(pwd.getpwnam(self.user.name).pw_dir),
             exchange=Path(self.exchange),
             shown=(Path(self.course), INSIDE, *map(Path, self.shown)),
         )
         told, tell = os.pipe()
-        # opened out here, where the proxy connects to it, and accepted from in there
+        # opened outside, where the proxy connects to it, and accepted inside the room
         with socket.create_server(('127.0.0.1', 0), backlog=128) as listening:
             try:
                 self.port = listening.getsockname()[1]
@@ -57,7 +57,7 @@ class RoomSpawner(LocalProcessSpawner):
                 address = await super().start()
             finally:
                 os.close(tell)
-        # signals go to the room's process 1: with it ends all that is in there
+        # signals go to the room's process 1: when it ends, all processes in the room end
         self.pid = await asyncio.wait_for(
             asyncio.to_thread(first_process, told), START_TIMEOUT_SEC
         )
@@ -65,7 +65,7 @@ class RoomSpawner(LocalProcessSpawner):
 
 
 def first_process(told: int) -> int:
-    """Return the number that bwrap tells. Raises RuntimeError where it could make no room."""
+    """Return the process ID that bwrap reports. Raises RuntimeError if it made no room."""
     with os.fdopen(told) as file:
         text = file.read()
     if not text:

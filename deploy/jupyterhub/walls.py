@@ -1,29 +1,29 @@
-"""What a room of a student is made of: the arguments of bubblewrap."""
+"""The arguments of bubblewrap for a student's room."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 HIDDEN = ('/tmp', '/var/tmp', '/run')
-"""Folders in which programs of all users leave files and sockets: each room has empty ones."""
+"""Folders in which programs of all users leave files and sockets: in a room they are empty."""
 
 
 @dataclass(frozen=True)
 class Room:
-    """What a student's server may see of the machine beside the read-only system."""
+    """What a student's server may see of the machine besides the read-only system."""
 
     home: Path
-    """Theirs; the homes of others, which lie beside it, are hidden."""
+    """The student's own home; the other homes in its parent folder are hidden."""
     exchange: Path
-    """nbgrader's: whose files are whose there, Linux decides."""
+    """nbgrader's exchange: Linux permissions separate the users' files in it."""
     shown: tuple[Path, ...]
-    """Read-only, wherever they lie: the course, the hub's socket, the configuration."""
+    """Read-only, at any path: the course, the hub's socket, the configuration."""
 
 
 def bubblewrap(room: Room, *, tell: int) -> list[str]:
-    """Return the command that runs what follows it in a room, as its process 1.
+    """Return the beginning of a command that runs the rest in a room, as its process 1.
 
-    bwrap writes to the descriptor `tell` which process that is outside. Raises ValueError where
-    homes are no folders beside each other, as `/home/ada` and `/home/bob` are.
+    bwrap writes that process's ID outside the room to the descriptor `tell`. Raises ValueError
+    unless homes are folders in a common parent, such as `/home/ada` and `/home/bob`.
     """
     homes = room.home.parent
     if len(room.home.parts) < 3 or '..' in room.home.parts:
@@ -32,7 +32,7 @@ def bubblewrap(room: Room, *, tell: int) -> list[str]:
             'each student one with useradd --create-home'
         )
     words = ['bwrap', '--as-pid-1', '--info-fd', str(tell)]
-    # its network has only `lo`, on which ROS's nodes meet: nobody else's are there
+    # its network has only `lo`, so ROS nodes find only the student's own nodes
     words += ['--unshare-user', '--unshare-net', '--unshare-pid', '--unshare-ipc', '--unshare-uts']
     words += ['--ro-bind', '/', '/', '--dev', '/dev', '--proc', '/proc']
     for folder in (*HIDDEN, str(homes)):

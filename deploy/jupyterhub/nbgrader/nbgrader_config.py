@@ -1,4 +1,4 @@
-"""Where lessons are fetched and handed in on this hub; JUPYTER_CONFIG_PATH names this folder."""
+"""Where this hub's students fetch and submit lessons; JUPYTER_CONFIG_PATH has this folder."""
 
 import tomllib
 from pathlib import Path
