@@ -1,4 +1,4 @@
-"""uv or pip: what they are asked for, and why they failed, in one sentence."""
+"""Run uv or pip, show their progress, and explain in one sentence why they failed."""
 
 import errno
 import os
@@ -14,7 +14,7 @@ from launcher.messages import LauncherError, clear_progress, say, show_progress
 from launcher.words import marked, put
 
 STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
-"""How the lines of an installer begin that tell how far it is."""
+"""How lines of an installer begin that report progress."""
 FULL = (errno.ENOSPC, errno.EDQUOT)
 NO_DISK = ('No space left on device', 'os error 28', 'Disk quota exceeded', 'os error 122')
 NO_NETWORK: tuple[str, ...] = (
@@ -36,32 +36,32 @@ NETWORK_IS_AWAY = marked(
 )
 FAILED = marked('setting up failed for the reason above: fix it, then start again.')
 SHOWN_LINES = 20
-"""How much of an installer's last words is shown where nobody knows what they mean."""
+"""How many of an installer's last lines are shown if the cause is unknown."""
 
 
 @dataclass(frozen=True)
 class Installer:
-    """What installs packages into a course's .venv."""
+    """Installs packages into a course's .venv."""
 
     environment: Environment
     variables: dict[str, str]
     lock: int
-    """Held by what is started, too: should this process end first, nobody else may write."""
+    """A descriptor that child processes inherit: the lock is held until the last of them ends."""
     wheels: Path | None = None
-    """The folder that everything is taken from, without any network."""
+    """The folder to install everything from, without a network; None to use the network."""
     uses_uv: bool = field(init=False)
 
     def __post_init__(self) -> None:
-        """Find out whether there is a uv that runs: pyenv has a shim for one that is not there."""
+        """Check that uv can be run: pyenv may have a shim for one that is not installed."""
         object.__setattr__(self, 'uses_uv', _runs(['uv', '--version'], self.variables))
 
     @property
     def name(self) -> str:
-        """What a person is told."""
+        """The installer's name, for messages."""
         return 'uv' if self.uses_uv else 'pip'
 
     def make_venv(self, python: Path) -> None:
-        """Make an empty .venv. Raises LauncherError where that Python has no venv module."""
+        """Make an empty .venv. Raises LauncherError if that Python has no venv module."""
         venv = self.environment.venv
         if not self.uses_uv and not _runs(
             [python, '-c', 'import ensurepip, venv'], self.variables
@@ -88,15 +88,15 @@ class Installer:
                 'uv', 'venv', *(['--offline'] if self.wheels else []), '--python', python, venv
             )
         else:
-            # in two steps: venv would keep the reason to itself, should there be no room for pip
+            # in two steps: if there is no room for pip, venv alone would not show the reason
             self.run(python, '-m', 'venv', '--without-pip', venv)
             self.run(self.environment.python, '-m', 'ensurepip')
 
     def install(self, *arguments: str | Path) -> None:
-        """Install what the arguments name."""
+        """Install what the arguments name, as arguments of `pip install`."""
         python = self.environment.python
         here: list[str | Path] = []
-        if self.wheels:  # a user's own settings may name further places
+        if self.wheels:  # ignore the user's configuration, which may name other sources
             here += ['--offline', '--no-config'] if self.uses_uv else ['--isolated']
             here += ['--no-index', '--find-links', self.wheels]
         if self.uses_uv:
@@ -133,14 +133,14 @@ class Installer:
 
 
 def progress(line: str) -> str:
-    """Return the step that a line of an installer tells of, or ''."""
+    """Return the step that a line of an installer reports, or ''."""
     if line.startswith('Installing collected packages'):
         return 'Installing'
     return line.partition(' (from ')[0] if line.startswith(STEPS) else ''
 
 
 def reason_of(lines: Iterable[str]) -> str:
-    """Return why an installer failed, in one sentence; an unknown cause behind its last lines."""
+    """Return why an installer failed, in one sentence; after its last lines if that is unknown."""
     lines = list(lines)
     for causes, sentence in ((NO_DISK, DISK_IS_FULL), (NO_NETWORK, NETWORK_IS_AWAY)):
         if any(cause in line for line in lines for cause in causes):
@@ -150,7 +150,7 @@ def reason_of(lines: Iterable[str]) -> str:
 
 @contextmanager
 def writing() -> Iterator[None]:
-    """Turn what goes wrong with files into a LauncherError."""
+    """Turn an OSError into a LauncherError."""
     try:
         yield
     except OSError as error:
@@ -159,7 +159,7 @@ def writing() -> Iterator[None]:
 
 
 def version_of(python: str | Path) -> str:
-    """Return the version of a Python, '3.12.1' say, or '' where it does not run."""
+    """Return the version of a Python, such as '3.12.1', or '' if it can't be run."""
     code = 'import sys; print("%d.%d.%d" % sys.version_info[:3])'
     try:
         run = subprocess.run([python, '-ISc', code], capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""What .venv needs beside ROS's wheels: files without their faults, and a line for Python."""
+"""Additions to the ROS wheels in .venv: fixes of their faults, and a startup hook for Python."""
 
 import os
 import re
@@ -10,15 +10,15 @@ from launcher.made import FOREIGN_HEADERS, LINE, MODULE, WAITS
 from launcher.shares import point
 
 EXPORTS = 'share/*/cmake/export_*__rosidl_generator_pyExport.cmake'
-"""What CMake reads of an interface package's Python part."""
+"""What CMake reads about the Python part of an interface package."""
 SOURCED = 'my_robot_basics/my_robot_basics/session/sourced.py'
 ENDLESS_WAITS = 'my_robot_basics/my_robot_basics/session/endless_waits.py'
 
 
 def fix_exports(environment: Environment) -> None:
-    """Take the paths of another machine out of the CMake files of ROS's wheels.
+    """Remove the paths of the build machine from the CMake files of the ROS wheels.
 
-    Each is replaced whole: uv links the files of .venv to those of its cache.
+    Each file is replaced, not changed: uv links the files of .venv to those of its cache.
     """
     for file in sorted(environment.venv.glob(EXPORTS)):
         text = file.read_text(encoding='utf-8')
@@ -28,7 +28,7 @@ def fix_exports(environment: Environment) -> None:
 
 
 def fix_waits(environment: Environment) -> None:
-    """Let rclpy's EventsExecutor spin without end: in the wheel it stops its whole process."""
+    """Let rclpy's EventsExecutor wait without a timeout: else it aborts the process then."""
     packages = packages_of(environment)
     file = packages / 'rclpy/experimental/events_executor.py'
     point(packages / f'{WAITS}.py', environment.root / ENDLESS_WAITS)
@@ -38,14 +38,14 @@ def fix_waits(environment: Environment) -> None:
 
 
 def tell_python(environment: Environment) -> None:
-    """Let each Python of .venv look at the workspace that its terminal has sourced."""
+    """Let each Python of .venv find packages of the workspace that its terminal has sourced."""
     packages = packages_of(environment)
     point(packages / f'{MODULE}.py', environment.root / SOURCED)
     replace(packages / f'{MODULE}.pth', LINE)
 
 
 def packages_of(environment: Environment) -> Path:
-    """Return the folder of .venv that Python imports from."""
+    """Return the site-packages folder of .venv."""
     version = version_of(environment.python).rpartition('.')[0]
     packages = environment.venv / f'lib/python{version}/site-packages'
     packages.mkdir(parents=True, exist_ok=True)
@@ -53,7 +53,7 @@ def packages_of(environment: Environment) -> Path:
 
 
 def replace(file: Path, text: str) -> None:
-    """Put a new file in the place of one that may be linked elsewhere, too."""
+    """Write a new file in place of one that may be a hard link of another file."""
     part = file.with_name(f'{file.name}.part')
     part.write_text(text, encoding='utf-8')
     os.replace(part, file)

@@ -16,21 +16,21 @@ from launcher.languages import (
 from launcher.messages import LauncherError
 
 TERMINAL = 'my_robot_basics/my_robot_basics/ros2/terminal.bash'
-"""What a terminal in JupyterLab begins with."""
+"""The bash rcfile of terminals in JupyterLab."""
 SHELL = """{'shell_command': ['bash', '-c', 'exec bash --rcfile "$COURSE_TERMINAL" -i']}"""
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
-    """Become JupyterLab. Raises LauncherError where there are no lessons, or none in a language.
+    """Become JupyterLab. Raises LauncherError if there are no lessons, or none in that language.
 
-    Only the lessons are served: neither the solutions nor their nbgrader configuration lie under
-    the server's root.
+    Only the lessons are served: the solutions and their nbgrader configuration are not below the
+    server's root folder.
     """
     root, lessons = environment.root, environment.root / 'notebooks'
     if not lessons.is_dir():
         raise LauncherError('there is no folder notebooks/: make it with ./course release.')
     language, arguments = choose_language(lessons, variables, arguments)
-    # the file browser shows the workspace, too; where it lies elsewhere, its user knows the place
+    # show the workspace in the file browser, too, if it is at its default path
     workspace = root / 'ros_ws'
     if variables['ROS_WS'] == str(workspace) and workspace.is_dir():
         for folder in (lessons, *(lessons / each for each in languages(lessons))):
@@ -47,13 +47,13 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
 
 
 def options(lessons: Path, language: str, settings: Path) -> list[str]:
-    """Return what a server is told that shows the lessons; `settings` is JupyterLab's folder."""
+    """Return a server's options for the lessons; `settings` is JupyterLab's settings folder."""
     return [
         f'--ServerApp.root_dir={lessons}',
         f'--LabApp.default_url={first_page(language)}',
         f'--LabApp.app_settings_dir={settings}',
         f'--ServerApp.terminado_settings={SHELL}',
-        # the other one that .venv has is the grader's
+        # the other kernelspec in .venv is the grader's
         "--KernelSpecManager.allowed_kernelspecs={'python3'}",
         # it would warn that its configuration is missing
         "--ServerApp.jpserver_extensions={'nbgrader.server_extensions.formgrader': False}",
@@ -61,16 +61,16 @@ def options(lessons: Path, language: str, settings: Path) -> list[str]:
 
 
 def first_page(language: str) -> str:
-    """Return the address of the contents page."""
+    """Return the URL path of the contents page."""
     return f'/lab/tree/{"" if language == ENGLISH else f"{language}/"}{INDEX}'
 
 
 def server_variables(root: Path, lessons: Path, language: str) -> dict[str, str]:
-    """Return the variables that a server adds for its kernels and terminals."""
+    """Return the environment variables that a server adds for its kernels and terminals."""
     return {
         'PWD': str(lessons),
         VARIABLE: language,
-        # what a terminal starts is on this machine alone, as the notebooks' nodes are
+        # nodes started in a terminal stay on this machine, as the notebooks' nodes do
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'COURSE_TERMINAL': str(root / TERMINAL),
     }

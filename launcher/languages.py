@@ -1,4 +1,4 @@
-"""The language of the lessons that a user gets, of JupyterLab around them and of its terminals."""
+"""The language of lessons, of JupyterLab's menus, and of the terminals in it."""
 
 import json
 import locale
@@ -12,23 +12,23 @@ from launcher.words import put
 
 ENGLISH = 'en'
 OPTION, VARIABLE = '--language', 'COURSE_LANGUAGE'
-"""What chooses a language, and what tells it to all that is started."""
+"""The option that chooses a language, and the variable that passes it to child processes."""
 PLAIN_LOCALE = 'C.UTF-8'
-"""A locale that no machine has to generate."""
+"""A locale that exists without being generated."""
 INDEX = 'index.ipynb'
 SETTINGS, OVERRIDES = '.jupyterlab', 'overrides.json'
-"""JupyterLab's settings for lessons: they leave out the instructors' panels."""
+"""JupyterLab's settings for lessons: they hide the instructors' panels."""
 TRANSLATION = '@jupyterlab/translation-extension:plugin'
 
 
 def choose_language(
     lessons: Path, variables: Mapping[str, str], arguments: list[str]
 ) -> tuple[str, list[str]]:
-    """Return the language of the lessons to open, and the arguments without the one that names it.
+    """Return the language of the lessons, and the arguments without the option that chooses it.
 
-    `--language zh_CN` chooses, or else the lab in whose terminal this is, or else the user's
-    locale where there is such an edition.
-    Raises LauncherError where there is none of that name.
+    It is that of `--language zh_CN`, or else that of the JupyterLab whose terminal this is, or
+    else that of the user's locale if there is such an edition. Raises LauncherError if there are
+    no lessons in the language of `--language`.
     """
     known = [ENGLISH, *languages(lessons)]
     kept, asked = [], ''
@@ -55,7 +55,7 @@ def languages(lessons: Path) -> list[str]:
 
 
 def of_the_locale(lessons: Path, variables: Mapping[str, str]) -> str:
-    """Return the edition that fits the user's locale best: zh_CN, or another Chinese one."""
+    """Return the edition that fits the user's locale best: for zh_TW, it may be zh_CN."""
     known = [ENGLISH, *languages(lessons)]
     said = (variables.get(name) for name in ('LC_ALL', 'LC_MESSAGES', 'LANG'))
     theirs = next(filter(None, said), '').partition('.')[0].partition('@')[0]
@@ -64,9 +64,9 @@ def of_the_locale(lessons: Path, variables: Mapping[str, str]) -> str:
 
 
 def replaced_locale(variables: Mapping[str, str]) -> dict[str, str]:
-    """Return what stands in for an LC_ALL that this machine has not generated; else nothing.
+    """Return a replacement for LC_ALL if this machine lacks that locale; else nothing.
 
-    Each bash warns of one, in every cell that has a `!`. The language is told by `VARIABLE`.
+    bash warns of a missing locale in every cell with a `!`. `VARIABLE` still has the language.
     """
     asked = variables.get('LC_ALL', '')
     return {'LC_ALL': PLAIN_LOCALE} if not _is_there(asked) and _is_there(PLAIN_LOCALE) else {}
@@ -85,10 +85,10 @@ def _is_there(name: str) -> bool:
 
 
 def jupyterlab_settings(environment: Environment, language: str) -> Path:
-    """Return the folder of JupyterLab's settings, made in .venv where its menus are translated.
+    """Return the folder of JupyterLab's settings, made in .venv if its menus are translated.
 
-    A language whose pack is not installed has English menus. What a user chooses in JupyterLab
-    counts more than these.
+    For a language without an installed language pack, menus are in English. What a user chooses in
+    JupyterLab overrides these settings.
     """
     ours = environment.root / SETTINGS
     if not has_menus(environment, language):
@@ -99,13 +99,13 @@ def jupyterlab_settings(environment: Environment, language: str) -> Path:
 
 
 def has_menus(environment: Environment, language: str) -> bool:
-    """Whether JupyterLab's menus are translated into a language."""
+    """Whether a translation of JupyterLab's menus into a language is installed."""
     packs = f'lib/python*/site-packages/jupyterlab_language_pack_{language}'
     return language != ENGLISH and any(environment.venv.glob(packs))
 
 
 def write_settings(environment: Environment, language: str, folder: Path) -> None:
-    """Write JupyterLab's settings for lessons into a folder, with the menus of a language."""
+    """Write JupyterLab's settings for lessons into a folder, with menus in a language."""
     shutil.copytree(environment.root / SETTINGS, folder, dirs_exist_ok=True)
     if has_menus(environment, language):
         settings = json.loads((folder / OVERRIDES).read_text(encoding='utf-8'))

@@ -1,7 +1,7 @@
-"""What .venv was made from, and whether that is still what there is.
+"""What .venv was made from, and whether it is up to date.
 
-Each `./course` asks that first. So this knows paths as text alone: pathlib and dataclasses take
-three times as long to import as everything else here.
+Each `./course` checks that first, so it must be fast. Paths are strings here: to import pathlib
+and dataclasses takes three times as long as all the rest.
 """
 
 import hashlib
@@ -9,41 +9,41 @@ import os
 import sys
 
 PINS = 'environment.txt'
-"""In the course's root, where installers run."""
+"""In the course's root folder, from which installers run."""
 INTERFACES = 'arm_interfaces/wheel'
-"""Where the wheel of the course's own service and action lies: students have no compiler."""
+"""The folder with the wheel of the course's own interfaces: students have no compiler."""
 TOOLS = {'ros2': 'ros2.main', 'topic_doctor': 'doctor.main', 'colcon': 'ros2.colcon'}
-"""The tools and their modules: colcon, too, says in a sentence what it lacks. setup.py names the
-nodes alone, which students build, too."""
+"""The tools and their modules; colcon is wrapped so that it explains what is missing. setup.py
+lists only the nodes, because students build it, too."""
 UNDERLAY = r"""case :$PATH: in *:"$COLCON_CURRENT_PREFIX/bin":*) ;; *) export PATH="$COLCON_CURRENT_PREFIX/bin:$PATH" ;; esac
 case :${AMENT_PREFIX_PATH:-}: in
     *:"$COLCON_CURRENT_PREFIX":*) ;;
     *) export AMENT_PREFIX_PATH="$COLCON_CURRENT_PREFIX${AMENT_PREFIX_PATH:+:$AMENT_PREFIX_PATH}" ;;
 esac
 """  # noqa: E501
-"""What a workspace's setup.bash reads of the ROS that it was built on: any terminal can."""
+"""What a workspace's setup.bash sources as its underlay: any shell can run it."""
 KERNELS = "c.InteractiveShellApp.extensions.append('my_robot_basics.live.extension')\n"
-"""What each IPython kernel of .venv reads at its start."""
+"""The configuration of each IPython kernel of .venv."""
 FOREIGN_HEADERS = r'(INTERFACE_INCLUDE_DIRECTORIES) "/opt/python/[^"]*"'
-"""Python's and NumPy's, where they lie on the machine that made the wheels: CMake refuses a
-folder that does not exist. Whoever compiles such a part names its own Python's headers anyway."""
+"""Header paths of Python and NumPy on the machine that built the wheels: CMake refuses folders
+that do not exist. A build of such a part adds its own Python's headers anyway."""
 MODULE = 'my_robot_basics_sourced'
 LINE = f"import os; os.environ.get('PYTHONPATH') and __import__('{MODULE}').start()\n"
-"""What each Python of .venv runs first: `.pth` files are read by name, and that of ROS's wheels,
-ros_wheels_bootstrapper.pth, starts Python again."""
+"""What each Python of .venv runs first. `.pth` files are read in the order of their names, and
+ros_wheels_bootstrapper.pth, of the ROS wheels, restarts Python."""
 WAITS = 'my_robot_basics_waits'
-"""What rclpy's EventsExecutor imports, so that it can wait without end."""
+"""A module that is imported with rclpy's EventsExecutor, so that it can wait without a timeout."""
 ENVIRONMENT, PACKAGES = 'made_environment', 'made_packages'
-"""Files in .venv that say what the packages, and what our own, were made from."""
+"""Files in .venv that record what the packages, and our own packages, were made from."""
 
 
 def made_environment(root: str, version: str) -> str:
-    """Return what the packages of .venv depend on; one that was moved points to where it was."""
+    """Return what .venv depends on; it includes the path, because a moved .venv does not work."""
     return f'{root}\n{version}\n{_text(root, PINS)}'
 
 
 def made_packages(root: str) -> str:
-    """Return what our own packages' entry in .venv depends on."""
+    """Return what the installation of our own packages in .venv depends on."""
     package = 'my_robot_basics'
     button = f'{package}/my_robot_basics/validate/labextension'
     files = [f'{package}/package.xml', *_files(root, package, begin='setup.')]
@@ -57,13 +57,13 @@ def made_packages(root: str) -> str:
 
 
 def interfaces_wheel(root: str) -> str:
-    """Return the path in the course of the one wheel of arm_interfaces, as installers want it.
+    """Return the relative path of the wheel of arm_interfaces, as installers expect it.
 
-    Raises LauncherError where it is missing, or is not the only one.
+    Raises LauncherError if there is no wheel, or more than one.
     """
     found = _files(root, INTERFACES, end='.whl')
     if len(found) != 1:
-        from launcher.messages import LauncherError  # seldom needed, and longer to import
+        from launcher.messages import LauncherError  # rarely needed, and slow to import
 
         raise LauncherError(
             '{folder}/ has {found} wheels (*.whl), expected one: get the files of the course '
@@ -75,17 +75,17 @@ def interfaces_wheel(root: str) -> str:
 
 
 def is_current(root: str, name: str, made: str) -> bool:
-    """Whether a file of .venv says that it was made from that."""
+    """Whether a file in .venv has this content, which records what it was made from."""
     return os.path.isfile(f'{root}/.venv/{name}') and _text(root, f'.venv/{name}') == made
 
 
 def is_set_up(root: str) -> bool:
-    """Whether there is nothing to do."""
+    """Whether .venv is up to date."""
     return has_environment(root) and is_current(root, PACKAGES, made_packages(root))
 
 
 def has_environment(root: str, version: str = '') -> bool:
-    """Whether .venv has the packages, and that version of Python, if one is asked for."""
+    """Whether .venv has the pinned packages, and this version of Python if one is given."""
     python = f'{root}/.venv/bin/python'
     if not os.access(python, os.X_OK):
         return False
@@ -95,7 +95,7 @@ def has_environment(root: str, version: str = '') -> bool:
 
 
 def _version(python: str) -> str:
-    if sys.executable == python:  # asked by what would have to be started for it
+    if sys.executable == python:  # this process is that Python: no need to start it
         return '{}.{}.{}'.format(*sys.version_info[:3])
     from launcher.installer import version_of
 
@@ -103,7 +103,7 @@ def _version(python: str) -> str:
 
 
 def _files(root: str, folder: str, *, begin: str = '', end: str = '') -> list[str]:
-    """Return the files of a folder of the course whose names begin and end so, sorted."""
+    """Return the files in a folder of the course with this beginning and end, sorted."""
     path = f'{root}/{folder}'
     names = sorted(os.listdir(path)) if os.path.isdir(path) else []
     return [f'{folder}/{name}' for name in names if name.startswith(begin) and name.endswith(end)]

@@ -1,4 +1,4 @@
-"""Set up, then run a verb."""
+"""Set up .venv, then run a verb."""
 
 import os
 import sys
@@ -10,19 +10,19 @@ from launcher.verbs import Verb, read_verbs
 
 ROOT = Path(__file__).resolve().parents[1]
 READY = '--ready'
-"""Stands for the Python where nothing has to be set up: `course` has just asked."""
+"""Given instead of a Python if nothing has to be set up: `course` has just checked that."""
 
 
 def main(arguments: list[str]) -> int:
     """Run `PYTHON VERB [ARGUMENT...]`; return the exit status.
 
-    PYTHON is the interpreter that a new `.venv` would be made with, or READY.
+    PYTHON is the interpreter for a new `.venv`, or READY.
     """
     environment = Environment(ROOT)
     python, name, *rest = arguments
     try:
         if python != READY:
-            from launcher.set_up import set_up  # installers, which most calls do without
+            from launcher.set_up import set_up  # imports the installers, which are rarely needed
 
             set_up(environment, Path(python))
         return run_verb(environment, read_verbs()[name], rest)
@@ -34,7 +34,7 @@ def main(arguments: list[str]) -> int:
 
 
 def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
-    """Run a verb in its folder; return the exit status, if this process does not become it."""
+    """Run a verb in its folder; return the exit status, unless this process is replaced by it."""
     variables = environment.variables(os.environ)
     if verb.owner == 'everyone':
         from launcher.languages import VARIABLE, of_the_locale, replaced_locale
@@ -43,7 +43,7 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
         variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
         variables |= replaced_locale(variables)
     else:
-        variables.pop('COURSE_LANGUAGE', None)  # a terminal's: what grades speaks English
+        variables.pop('COURSE_LANGUAGE', None)  # set in a terminal; grading is always in English
     if verb.folder == 'root':
         os.chdir(environment.root)
         variables['PWD'] = str(environment.root)

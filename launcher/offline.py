@@ -1,4 +1,4 @@
-"""A folder with every file that is pinned: what is in it, and whether that is enough."""
+"""A folder with all pinned files, to install from: its contents, and whether it is complete."""
 
 import hashlib
 import json
@@ -12,24 +12,24 @@ from launcher.messages import LauncherError
 from launcher.words import put
 
 VARIABLE = 'COURSE_WHEELS'
-"""Names the folder to install from; `./course --offline FOLDER` sets it."""
+"""The variable with the folder to install from; `./course --offline FOLDER` sets it."""
 CONTENTS = 'contents.json'
-"""In the folder, and written last: for each Python, `3.12` say, its files and their SHA-256."""
+"""A file in the folder, written last: for each Python, such as `3.12`, files and their SHA-256."""
 PYTHONS = ('3.11', '3.12', '3.13')
 NAMED = 3
-"""How many packages a sentence names."""
+"""How many packages a message names."""
 
 
 @dataclass(frozen=True)
 class Wheels:
-    """A folder of wheels, and of sources where a package has no wheel."""
+    """A folder of wheels, and of source archives for packages without a wheel."""
 
     folder: Path
     files: Mapping[str, Mapping[str, str]]
-    """For each Python: the SHA-256 of each file by its name."""
+    """For each Python: the SHA-256 of each file, by file name."""
 
     def lacking(self, python: str, pins: Mapping[str, frozenset[str]]) -> list[str]:
-        """Return the pins of which there is no file for that Python."""
+        """Return the pins that have no file for that Python in the folder."""
         there = {
             digest
             for name, digest in self.files.get(python, {}).items()
@@ -39,13 +39,13 @@ class Wheels:
 
 
 def asked_for(variables: Mapping[str, str]) -> Path | None:
-    """Return the folder from which to install, if there is to be no network."""
+    """Return the folder to install from without a network; None if the network may be used."""
     named = variables.get(VARIABLE, '')
     return Path(named).absolute() if named else None
 
 
 def read_wheels(folder: Path) -> Wheels:
-    """Return what `./course wheels` put into a folder. Raises LauncherError where it is none."""
+    """Read the folder that `./course wheels` made. Raises LauncherError if it did not."""
     try:
         files = json.loads((folder / CONTENTS).read_text(encoding='utf-8'))
     except (OSError, ValueError):
@@ -60,14 +60,14 @@ def read_wheels(folder: Path) -> Wheels:
 
 
 def write_wheels(wheels: Wheels) -> None:
-    """Write down what is in the folder, whole or not at all."""
+    """Record the folder's contents in a file, written atomically."""
     part = wheels.folder / f'{CONTENTS}.part'
     part.write_text(json.dumps(wheels.files, indent=1, sort_keys=True) + '\n', encoding='utf-8')
     os.replace(part, wheels.folder / CONTENTS)
 
 
 def read_pins(pins: Path) -> dict[str, frozenset[str]]:
-    """Return what environment.txt pins: the SHA-256 of the files that may be installed, by pin."""
+    """Return the pins of environment.txt, each with the SHA-256 of the files it allows."""
     packages = re.split(r'^(?=\w)', pins.read_text(encoding='utf-8'), flags=re.MULTILINE)
     return {
         package.split()[0]: frozenset(re.findall('--hash=sha256:([0-9a-f]{64})', package))
@@ -77,7 +77,7 @@ def read_pins(pins: Path) -> dict[str, frozenset[str]]:
 
 
 def check_wheels(folder: Path, version: str, pins: Path) -> None:
-    """See that a folder has all that a Python, `3.12.1` say, needs. Raises LauncherError."""
+    """Check that a folder has all that a Python, such as `3.12.1`, needs. Raises LauncherError."""
     wheels, python = read_wheels(folder), version.rpartition('.')[0]
     if python not in wheels.files:
         raise LauncherError(
@@ -101,7 +101,7 @@ def check_wheels(folder: Path, version: str, pins: Path) -> None:
 
 
 def in_words(pins: Iterable[str]) -> str:
-    """Return a few of the packages, and how many more there are."""
+    """Return the first of the packages, and how many more there are."""
     pins = list(pins)
     named = ', '.join(pins[:NAMED])
     if len(pins) <= NAMED:

@@ -1,4 +1,4 @@
-"""`./course progress`: what the contents page shows of a student's own work, in a terminal."""
+"""`./course progress`: the progress that the contents page shows, in a terminal."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ from launcher.messages import LauncherError
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
-    """Become the program that prints it. Raises LauncherError where there are no lessons."""
+    """Become the program that prints it. Raises LauncherError if there are no lessons."""
     lessons = environment.root / 'notebooks'
     if not lessons.is_dir():
         raise LauncherError('there is no folder notebooks/: make it with ./course release.')

@@ -1,7 +1,7 @@
-"""Make `.venv`, or bring it up to date; say nothing where it is.
+"""Make `.venv`, or bring it up to date; print nothing if it is.
 
-What it was made from is kept inside it, in two files that are written last: where one is missing
-or tells of something else, its part of the work is done again.
+What it was made from is recorded in two files in it, which are written last: if one is missing or
+differs, its part of the work is done again.
 """
 
 import fcntl
@@ -30,18 +30,18 @@ from launcher.offline import asked_for, check_wheels
 from launcher.shares import make_tools, tell_ament, tell_jupyter
 
 BUILD_TOOLS = ('setuptools',)
-"""What the packages are built with that exist as sources alone."""
+"""Packages that are needed to build those which exist only as sources."""
 
 
 def remember(environment: Environment, name: str, made: str) -> None:
-    """Write down what .venv was made from."""
+    """Record what .venv was made from."""
     part = environment.venv / f'{name}.part'
     part.write_text(made, encoding='utf-8')
     part.rename(environment.venv / name)
 
 
 def set_up(environment: Environment, python: Path) -> None:
-    """Make all of .venv that is missing. Raises LauncherError where that cannot be done."""
+    """Make or update .venv as far as needed. Raises LauncherError if that fails."""
     asked = version_of(python) if os.environ.get('PYTHON') else ''
     root = str(environment.root)
     if has_environment(root, asked) and is_current(root, PACKAGES, made_packages(root)):
@@ -63,14 +63,14 @@ def set_up(environment: Environment, python: Path) -> None:
 
 
 def make_environment(installer: Installer, python: Path) -> None:
-    """Make a new .venv with every package that is pinned."""
+    """Make a new .venv with all pinned packages."""
     environment = installer.environment
     if python.parent == environment.python.parent:  # .venv was activated in the caller's shell
         python = Path(sys._base_executable)  # type: ignore[attr-defined]  # not in typeshed's sys
     if installer.wheels:
         check_wheels(installer.wheels, version_of(python), environment.root / PINS)
     installer.make_venv(python)
-    # pip's own environments for builds know of no hashes, so that the tools must be here before
+    # pip does not check hashes in its isolated build environments: install the build tools first
     pins = environment.venv / 'build_tools.txt'
     with writing():
         pins.write_text(build_tools(environment.root / PINS), encoding='utf-8')
@@ -82,17 +82,17 @@ def make_environment(installer: Installer, python: Path) -> None:
 
 
 def build_tools(pins: Path) -> str:
-    """Return the part of environment.txt that pins the tools, with its hashes."""
+    """Return the part of environment.txt that pins the build tools, with hashes."""
     packages = re.split(r'^(?=\w)', pins.read_text(encoding='utf-8'), flags=re.MULTILINE)
     return ''.join(package for package in packages if package.partition('==')[0] in BUILD_TOOLS)
 
 
 def install_packages(installer: Installer) -> None:
-    """Install the course's own packages: editable, so that a change holds at once."""
+    """Install the course's own packages as editable, so that changes take effect at once."""
     environment = installer.environment
     root = str(environment.root)
     ours = ['-e', './my_robot_basics', *(['-e', '.'] if environment.has_grader else [])]
-    # by force: a wheel of the same version may hold something else by now
+    # reinstall always: a wheel of the same version may have changed
     options = ('--no-deps', '--no-build-isolation', '--force-reinstall')
     installer.install(*options, *ours, interfaces_wheel(root))
     with writing():
@@ -107,9 +107,9 @@ def install_packages(installer: Installer) -> None:
 
 @contextmanager
 def locked(root: Path) -> Iterator[int]:
-    """Lock the course's folder, so that two calls do not write one .venv; yield the descriptor.
+    """Lock the course's folder, so that two calls do not write to one .venv; yield the descriptor.
 
-    The lock goes with the processes that hold it.
+    The lock is released when all processes that have the descriptor end.
     """
     descriptor = os.open(root, os.O_RDONLY | os.O_DIRECTORY)
     try:

@@ -1,4 +1,4 @@
-"""What an editable install leaves out of .venv: ROS's index, Jupyter's folders, the tools."""
+"""What an editable install lacks in .venv: ROS's index, Jupyter's files, and the tools."""
 
 import os
 import re
@@ -18,7 +18,7 @@ KERNEL = 'share/jupyter/kernels/my_robot_basics_sandbox'
 
 
 def tell_ament(environment: Environment) -> None:
-    """Put what ROS looks for in place: the package's marker, package.xml and executables."""
+    """Install what ROS looks for: the marker in the index, package.xml and executables."""
     venv, package = environment.venv, environment.root / 'my_robot_basics'
     index = venv / 'share/ament_index/resource_index/packages'
     share, executables = venv / 'share/my_robot_basics', venv / 'lib/my_robot_basics'
@@ -40,7 +40,7 @@ def executables_of(setup: str) -> list[str]:
 
 
 def tell_jupyter(environment: Environment) -> None:
-    """Put in place the Validate button, its part of the server, and what kernels read."""
+    """Install the Validate button, its server extension, and the configuration of kernels."""
     venv, button = environment.venv, environment.root / BUTTON
     extensions, server = venv / 'share/jupyter/labextensions', venv / 'etc/jupyter'
     server /= 'jupyter_server_config.d'
@@ -56,13 +56,13 @@ def tell_jupyter(environment: Environment) -> None:
 
 
 def point(link: Path, target: Path) -> None:
-    """Make a link, in the place of one that is there."""
+    """Make a symbolic link; replace an existing one."""
     link.unlink(missing_ok=True)
     link.symlink_to(target)
 
 
 def make_tools(environment: Environment) -> None:
-    """Write the tools; each as a new file: an installer may have linked colcon elsewhere."""
+    """Write the tools as new files: an installer may have hard-linked colcon to its cache."""
     for name, module in TOOLS.items():
         tool = environment.venv / 'bin' / name
         tool.unlink(missing_ok=True)

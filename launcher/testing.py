@@ -23,27 +23,27 @@ from launcher.unstable import (
 TIERS = ('--quick', '--slow')
 SHARD = '--shard='
 ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
-"""How the options begin that leave it a check of everything."""
+"""Beginnings of options with which it still checks everything."""
 LESSONS = 'solutions/*/*.ipynb'
 WORKERS = 8
-"""How many processes run tests at a time …"""
+"""How many processes run tests at a time."""
 LESSON_WORKERS = 3
-"""… and how many run lessons, beside them."""
+"""How many processes run lessons at a time, while the tests run."""
 LESSONS_CACHE = Path('.pytest_cache/lessons')
-"""Of the pytest that runs the lessons: beside the other, which has its own."""
+"""The cache of the pytest that runs the lessons: it must not share that of the tests."""
 OWN_NETWORK = (
     *('bwrap', '--dev-bind', '/', '/', '--tmpfs', '/dev/shm', '--unshare-net', '--unshare-ipc'),
     '--die-with-parent',
 )
-"""Runs a command where ROS finds no node of another process, and no terminal joins its lesson."""
+"""Runs a command with a network and shared memory of its own: ROS nodes of others are not seen."""
 NBVAL = (
     *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60'),
     *('-o', f'cache_dir={LESSONS_CACHE}'),
 )
 USAGE_ERROR = 4
-"""How pytest ends that does not understand an argument."""
+"""pytest's exit status if it does not understand an argument."""
 RECORD = 'unstable_tests.txt'
-"""In the course's root; one line for each test that failed beside others and passed alone."""
+"""In the course's root: a line for each test that failed beside others but passed alone."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Checks:
     environment: Environment
     variables: dict[str, str]
     reports: Path
-    """Where pytest writes what came of each test."""
+    """The folder of pytest's reports."""
 
     def call(self, *command: str) -> int:
         """Run a command in the course's folder; return its exit status."""
@@ -62,7 +62,7 @@ class Checks:
 
     @contextmanager
     def beside(self, name: str, *command: str) -> Iterator[subprocess.Popen]:
-        """Run a command beside what else is done; at the end print what it said."""
+        """Run a command in the background; at the end of the block, wait and print its output."""
         said = self.reports / f'{name}.txt'
         with said.open('wb') as written:
             running = subprocess.Popen(
@@ -79,48 +79,48 @@ class Checks:
             print(said.read_text(encoding='utf-8', errors='replace'), end='', flush=True)
 
     def pytest(self, report: str, *arguments: str) -> list[str]:
-        """Return the command that runs pytest; `report` is the name of what it writes."""
+        """Return the command that runs pytest; `report` is the file name of its report."""
         python = str(self.environment.python)
         return [python, '-P', '-m', 'pytest', f'--junitxml={self.reports / report}', *arguments]
 
     def compile_tests(self) -> None:
-        """Compile all tests of a fresh clone once: each worker would, all at the same time."""
+        """Compile all tests of a fresh clone once; otherwise each worker would do it."""
         if any(self.environment.root.glob('tests/__pycache__/*-pytest-*.pyc')):
             return
         command = self.pytest('none.xml', '--collect-only', '-q', '-n', '0')
-        # what is wrong with a test is said by the run that follows
+        # errors in tests are reported by the run that follows
         subprocess.run(command, cwd=self.environment.root, env=self.variables, capture_output=True)
 
     def tests(self, arguments: list[str]) -> list[str]:
         """Return the command that runs the tests, several at a time."""
-        # most tests wait most of the time, those of the quick tier do not; one file stays on one
-        # worker: its tests share kernels and a ROS domain
+        # most tests mostly wait, but not those of the quick tier; all tests of a file run in
+        # one worker, because they share kernels and a ROS domain
         processors = len(os.sched_getaffinity(0))
         workers = min(processors, WORKERS) if '--quick' in arguments else WORKERS
         many = ('-n', str(workers), '--dist', 'loadfile', '--no-loadscope-reorder')
         return self.pytest('tests.xml', *many, *arguments)
 
     def failed_tests(self, arguments: list[str]) -> list[str]:
-        """Return the command that runs alone the tests that failed."""
+        """Return the command that runs the failed tests again, one at a time."""
         alone = ('--last-failed', '-n', '0', '--maxfail', '5')
         return self.pytest('tests-alone.xml', '-v', *arguments, *alone)
 
     def lessons(self, shard: list[str]) -> list[str]:
-        """Return the command that runs the lessons against their stored outputs."""
+        """Return the command that runs the lessons, and compares their stored outputs."""
         many = ('-n', str(LESSON_WORKERS), '--dist', 'loadfile', 'solutions')
         return self.pytest('lessons.xml', *NBVAL, *shard, *many)
 
     def failed_lessons(self, shard: list[str]) -> list[str]:
-        """Return the command that runs alone the lessons that differed, each whole."""
+        """Return the command that runs failed lessons again, each completely, one at a time."""
         failed = failed_lessons(self.environment.root) or ['solutions']
         return self.pytest('lessons-alone.xml', *NBVAL, *shard, '-v', '-n', '0', *failed)
 
     def again(self, what: str, status: int, command: Callable[[], list[str]]) -> int:
-        """Run alone what failed beside others: what fails twice has failed.
+        """Run failed tests again, one at a time; those that fail twice have failed.
 
-        A machine that is short of time fails tests that nothing is wrong with. They are written
-        down, with their reasons; if these have more than MOST causes in a run, the run has failed,
-        too. A file that cannot be imported is no such test.
+        On a busy machine, tests can fail without a fault. Those that pass alone are recorded, with
+        their reasons; if a run has more than MOST causes of this kind, the run has failed, too. A
+        file that can't be imported is not run again.
         """
         if status != 1:
             return status
@@ -149,7 +149,7 @@ class Checks:
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
-    """Run everything even after a failure; return the last failure's exit status."""
+    """Run all checks even after a failure; return the exit status of the last failure."""
     if not {'-h', '--help'}.isdisjoint(arguments):
         asked = Checks(environment, variables, Path())
         return asked.call(str(environment.python), '-P', '-m', 'pytest', '--help')
@@ -160,7 +160,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         ruff = str(environment.venv / 'bin/ruff')
         statuses = [checks.call(ruff, 'check', '.'), checks.call(ruff, 'format', '--check', '.')]
         tests, shard = [*options, *named], [each for each in options if each.startswith(SHARD)]
-        # unless single tests were asked for, or what starts no kernel
+        # not if single tests or the quick tier were asked for
         is_all = not named and '--quick' not in options
         has_lessons = is_all and any(environment.root.glob(LESSONS))
         with ExitStack() as beside:
@@ -172,7 +172,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
                 command = [*OWN_NETWORK, *checks.lessons(shard)]
                 in_lessons = beside.enter_context(checks.beside('lessons', *command))
             status = checks.call(*checks.tests(tests))
-            if status == USAGE_ERROR:  # it is said already, and nothing was tested
+            if status == USAGE_ERROR:  # pytest has printed it, and nothing was tested
                 for other in filter(None, (types, in_lessons)):
                     other.terminate()
                 return status
@@ -193,7 +193,7 @@ def has_own_network() -> bool:
 
 
 def failed_lessons(root: Path) -> list[str]:
-    """Return the paths of the lessons in which a cell failed last, as pytest remembers it."""
+    """Return the paths of the lessons that failed in the last run, by pytest's cache."""
     remembered = root / LESSONS_CACHE / 'v/cache/lastfailed'
     text = remembered.read_text(encoding='utf-8') if remembered.is_file() else ''
     lessons = (str(path.relative_to(root)) for path in sorted(root.glob(LESSONS)))

@@ -1,4 +1,4 @@
-"""Tests that fail beside others and pass alone: which they are, why, and how many."""
+"""Tests that fail beside others but pass alone: find and record them, with their reasons."""
 
 from collections.abc import Iterator
 from datetime import datetime
@@ -6,16 +6,16 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 MOST = 2
-"""How many of them a run may have."""
+"""How many causes of such tests a run may have."""
 NO_KERNEL = 'failed on setup with "RuntimeError: Kernel died before'
-"""How the reason begins of each cell of a lesson whose kernel has never run one."""
+"""Beginning of the reason of each cell in a lesson whose kernel did not start."""
 BAD = ('failure', 'error')
 UNREAD = 'collection failure'
-"""What pytest writes where a file of tests could not be imported."""
+"""pytest's message if a file of tests could not be imported."""
 
 
 def read_failures(report: Path) -> dict[str, str]:
-    """Return the tests that failed and why, in a line, from what `pytest --junitxml` wrote."""
+    """Return failed tests and their reasons, in one line each, from pytest's JUnit report."""
     failures: dict[str, str] = {}
     for name, case in _cases(report):
         for bad in case.iter():
@@ -28,7 +28,7 @@ def read_failures(report: Path) -> dict[str, str]:
 
 
 def read_import_errors(report: Path) -> dict[str, str]:
-    """Return the files of tests that pytest could not import, and why: the error's last line."""
+    """Return files of tests that pytest could not import, and the last line of each error."""
     errors: dict[str, str] = {}
     for name, case in _cases(report):
         error = case.find('error')
@@ -50,18 +50,18 @@ def read_passes(report: Path) -> set[str]:
 
 
 def unstable(failures: dict[str, str], passes: set[str]) -> dict[str, str]:
-    """Return those that failed first and passed then, with why they failed."""
+    """Return the tests that failed first and passed alone, with the reasons of the failures."""
     return {name: why for name, why in failures.items() if name in passes}
 
 
 def count_causes(tests: dict[str, str]) -> int:
-    """Return how many causes: a kernel that did not start fails all cells of a lesson."""
+    """Count causes: a kernel that did not start is one, though all cells of its lesson fail."""
     no_kernel = {name for name, why in tests.items() if why.startswith(NO_KERNEL)}
     return len(tests.keys() - no_kernel) + len({name.rpartition('::')[0] for name in no_kernel})
 
 
 def add_unstable(record: Path, tests: dict[str, str]) -> int:
-    """Add a line for each test to the record; return how many it has."""
+    """Append a line for each test to the record; return how many lines it has."""
     now = datetime.now().astimezone().isoformat(' ', 'minutes')
     with record.open('a', encoding='utf-8') as file:
         file.writelines(f'{now}  {name}: {why}\n' for name, why in tests.items())
@@ -69,7 +69,7 @@ def add_unstable(record: Path, tests: dict[str, str]) -> int:
 
 
 def _cases(report: Path) -> Iterator[tuple[str, ElementTree.Element]]:
-    """Yield each test's name and its element; nothing where pytest wrote no report."""
+    """Yield each test's name and its element; nothing if pytest wrote no report."""
     if report.is_file():
         for case in ElementTree.parse(report).iter('testcase'):
             yield f'{case.get("classname")}::{case.get("name")}', case

@@ -9,22 +9,22 @@ class Verb:
     """A row of the table."""
 
     def __init__(self, name: str, owner: str, runs: str, folder: str, explained: str) -> None:
-        """Take what the row says."""
+        """Take the fields of the row."""
         self.name = name
         self.owner = owner
-        """`everyone`, or `course` where it needs the whole repository."""
+        """`everyone`, or `course` if it needs the whole repository."""
         self.runs = runs
-        """`launcher.lab`, say, or else the arguments that follow `python -P -m`."""
+        """A module such as `launcher.lab`, or else the arguments after `python -P -m`."""
         self.folder = folder
-        """`root`, the course's, or `caller`, that in which ./course was called."""
+        """`root`: the course's root folder; `caller`: the folder where ./course was called."""
         self.help = explained
-        """What it is for, in a line."""
+        """Its help, in one line."""
 
 
 def read_verbs(table: Path = TABLE) -> dict[str, Verb]:
-    """Return the verbs by their names, in the order of the table.
+    """Return the verbs by name, in the order of the table.
 
-    Raises ValueError where a row is not as the table's first lines tell.
+    Raises ValueError if a row does not have the form that the table's first lines describe.
     """
     verbs = {}
     for line in table.read_text(encoding='utf-8').splitlines():

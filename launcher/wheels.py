@@ -1,6 +1,7 @@
 """`./course wheels [--python 3.11,3.12,3.13] FOLDER`: all that a machine without network needs.
 
-pip takes the very files that environment.txt pins; `./course --offline FOLDER` installs from them.
+pip downloads exactly the files that environment.txt pins; `./course --offline FOLDER` installs
+them.
 """
 
 import argparse
@@ -27,7 +28,7 @@ from launcher.set_up import locked
 
 PLATFORMS: tuple[str, ...] = ('manylinux1_x86_64', 'manylinux2010_x86_64', 'manylinux2014_x86_64')
 PLATFORMS += tuple(f'manylinux_2_{minor}_x86_64' for minor in range(5, 29))
-"""What runs on glibc 2.28, which ROS's packages need: pip takes each name by itself."""
+"""The platform tags for glibc 2.28, which the ROS packages need: pip requires each one's name."""
 
 
 def run(environment: Environment, variables: dict[str, str], arguments: list[str]) -> int:
@@ -62,9 +63,9 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
 
 
 def fill(environment: Environment, lock: int, folder: Path, versions: list[str]) -> Wheels:
-    """Download the files for each Python; return what the folder has then.
+    """Download the files for each Python; return the folder's contents.
 
-    Raises LauncherError where the folder holds something else, or a file cannot be had.
+    Raises LauncherError if the folder has other files, or if a file can't be downloaded.
     """
     before = what_is_there(folder)
     installer = Installer(environment, environment.outside(os.environ), lock)
@@ -83,9 +84,9 @@ def fill(environment: Environment, lock: int, folder: Path, versions: list[str])
 
 
 def what_is_there(folder: Path) -> Wheels:
-    """Return what an earlier call put there; make the folder where there is none.
+    """Return what an earlier call put there; make the folder if there is none.
 
-    Raises LauncherError where it cannot be made, or holds something else.
+    Raises LauncherError if it can't be made, or has other files.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -110,7 +111,7 @@ def what_is_there(folder: Path) -> Wheels:
 
 
 def download(installer: Installer, folder: Path, version: str) -> dict[str, str]:
-    """Put each pinned file for a Python into the folder; return their SHA-256 by name."""
+    """Put all pinned files for a Python into the folder; return their SHA-256 by name."""
     root = installer.environment.root
     platforms = [option for name in PLATFORMS for option in ('--platform', name)]
     with tempfile.TemporaryDirectory(dir=folder, suffix='.part') as part:
@@ -136,12 +137,12 @@ def download(installer: Installer, folder: Path, version: str) -> dict[str, str]
 
 
 def names_in(wheels: Wheels) -> set[str]:
-    """Return the names of all its files."""
+    """Return the names of all files."""
     return {name for files in wheels.files.values() for name in files}
 
 
 def pythons(text: str) -> list[str]:
-    """Read the versions of an argument; argparse shows what this raises."""
+    """Parse the versions of an argument; argparse shows the error."""
     versions = list(dict.fromkeys(text.split(',')))
     if unknown := [version for version in versions if version not in PYTHONS]:
         raise argparse.ArgumentTypeError(

@@ -1,4 +1,4 @@
-"""What `./course` says in the user's language, before there is a package that reads catalogues."""
+"""Translate messages of `./course`, before any package is installed that reads catalogues."""
 
 import os
 import re
@@ -6,25 +6,25 @@ from functools import cache
 from pathlib import Path
 
 VARIABLE = 'COURSE_WORDS'
-"""Names the catalogue, locale/*/LC_MESSAGES/launcher.po; `course` sets it, and '' is English."""
+"""The catalogue's path, locale/*/LC_MESSAGES/launcher.po, set by `course`; '' is English."""
 _ENTRY = re.compile(r'^((?:#.*\n)*)msgid ((?:".*"\n)+)msgstr ((?:".*"\n?)+)', re.MULTILINE)
 
 
 def put(template: str, **values: object) -> str:
-    """Return a sentence in the user's language, with values in its places."""
+    """Return a sentence in the user's language, with its placeholders filled in."""
     known = _read(os.environ.get(VARIABLE, ''))
     text = known.get(template, template)
     return text.format(**values) if values else text
 
 
 def marked(sentence: str) -> str:
-    """Return a sentence as it is; `./course translate` finds it here, and somebody puts it."""
+    """Mark a sentence for `./course translate`; it is translated later, where it is shown."""
     return sentence
 
 
 @cache
 def _read(catalogue: str) -> dict[str, str]:
-    """Return what is translated, and not fuzzy; nothing where there is no such file."""
+    """Return the translations that are not fuzzy; none if there is no such file."""
     if not catalogue or not Path(catalogue).is_file():
         return {}
     return {
@@ -39,6 +39,6 @@ def _is_fuzzy(about: str) -> bool:
 
 
 def _text(lines: str) -> str:
-    import json  # only for who has another language
+    import json  # only needed if the language is not English
 
     return ''.join(map(json.loads, lines.splitlines()))

@@ -1,12 +1,12 @@
-"""Unusual answers, right and wrong: what is in tests/answers/, and as a student hands it in.
+"""Unusual answers, right and wrong: read tests/answers/, and make submissions from it.
 
-Each file there holds the answers to one exercise. Lines at its top name the lesson and the
-checks, with their points. An answer begins with `right NAME: why` or `wrong NAME: why`; a wrong
-one says what it `earns`, a number for each check, and a word that the reason for each lost point
-`says`. Then comes what it changes in the first answer: the lines that it takes out (-) and puts
-in (+), and here and there a line that stays (a space) to tell where. An answer of + lines alone
-stands for itself. `cell ID` tells what else the student wrote there, `cell +ID` in a new cell
-behind it.
+Each file there has the answers to one exercise. Lines at its top name the lesson and the checks
+with their points. An answer begins with `right NAME: why` or `wrong NAME: why`. A wrong one says
+what it `earns`, a number for each check, and, with `says`, a word that the reason for each lost
+point contains. Then come its changes to the first answer: lines that it removes (-) and adds (+),
+and sometimes an unchanged line (a space) for the position. An answer with + lines only is
+complete. `cell ID` has what else the student wrote into that cell, `cell +ID` into a new cell
+after it.
 """
 
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ FOLDER = Path(__file__).parent / 'answers'
 
 @dataclass(frozen=True)
 class Answer:
-    """What one student writes into one answer cell, and what comes of it."""
+    """A student's answer in one answer cell, and what is expected of its grading."""
 
     lesson: str
     exercise: str
@@ -30,27 +30,27 @@ class Answer:
     why: str
     code: str
     full: dict[str, float]
-    """What can be earned, by the check."""
+    """The points of each check."""
     points: dict[str, float]
-    """What it earns."""
+    """The points that the answer earns, by check."""
     says: str = ''
-    """What the reason for each lost point has to hold."""
+    """What the reason for each lost point has to contain."""
     cells: dict[str, str] = field(default_factory=dict)
-    """What else the student wrote: by the cell's id, '+' before it for a new cell behind it."""
+    """What else the student wrote: by cell id, with '+' before it for a new cell after it."""
 
     @property
     def id(self) -> str:
-        """A name that no other answer has."""
+        """A unique name of this answer."""
         return f'{self.exercise}-{self.name}'
 
     def lost(self, check: str) -> bool:
-        """Whether it loses points at this check."""
+        """Whether it loses points in this check."""
         return self.points[check] < self.full[check]
 
 
 @cache
 def answers_to(exercise: str) -> list[Answer]:
-    """Read the answers to one exercise. Raises ValueError, with the answer, where one is wrong."""
+    """Read the answers to one exercise. Raises ValueError with the answer if one is malformed."""
     path = FOLDER / f'{exercise}.txt'
     head, *blocks = path.read_text(encoding='utf-8').split('\n\n')
     told = [line.split() for line in head.splitlines() if not line.startswith('#')]
@@ -68,14 +68,14 @@ def answers_to(exercise: str) -> list[Answer]:
 
 
 def all_answers() -> list[Answer]:
-    """Read all of them."""
+    """Read the answers to all exercises."""
     return [each for path in sorted(FOLDER.glob('*.txt')) for each in answers_to(path.stem)]
 
 
 def in_class(answers: list[Answer]) -> list[list[Answer]]:
-    """Put answers to the exercises of one lesson into one notebook each, where that is possible.
+    """Combine answers to different exercises of a lesson into one notebook each, if possible.
 
-    An answer with cells of its own gets a notebook alone: those could help another one.
+    An answer with cells of its own gets a separate notebook: the cells could help another answer.
     """
     alone = [[each] for each in answers if each.cells]
     papers: dict[tuple[str, int], list[Answer]] = {}
@@ -88,7 +88,7 @@ def in_class(answers: list[Answer]) -> list[list[Answer]]:
 
 
 def paper(answers: list[Answer]) -> NotebookNode:
-    """Return the released lesson with these answers, and the solutions' for the others."""
+    """Return the released lesson with these answers, and the solutions' answers elsewhere."""
     lesson = answers[0].lesson
     notebook = read('notebooks', lesson)
     wanted = {cell.id: cell.source for cell in read('solutions', lesson).cells}
@@ -135,7 +135,7 @@ def _answer(
 
 
 def _changed(usual: list[str], changes: list[str]) -> list[str]:
-    """Return the lines of an answer. Raises ValueError where one to change is not there."""
+    """Return the lines of an answer. Raises ValueError if a line to change is not there."""
     if changes and all(line[0] == '+' for line in changes):
         return [line[1:] for line in changes]
     result, done = [], 0

@@ -14,7 +14,7 @@ NOT_A_STUDENTS = ('PYTEST_', 'COV_', 'MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FA
 
 
 def students_environment() -> dict[str, str]:
-    """Return this process's environment without what a session of tests sets."""
+    """Return this process's environment without variables that a test session sets."""
     return {name: v for name, v in os.environ.items() if not name.startswith(NOT_A_STUDENTS)}
 
 
@@ -24,7 +24,7 @@ def read(folder: str, lesson: str) -> NotebookNode:
 
 
 def answered(lesson: str, folder: Path, **answers: str) -> Path:
-    """Write the released lesson with these answers, and the solutions' for the others."""
+    """Write the released lesson with these answers, and the solutions' answers elsewhere."""
     notebook = read('notebooks', lesson)
     right = {cell.id: cell.source for cell in read('solutions', lesson).cells}
     for cell in notebook.cells:

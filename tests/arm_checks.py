@@ -1,4 +1,4 @@
-"""What the grade cells ask of a server of /move_arm."""
+"""The grade cells' checks of a server of /move_arm."""
 
 from my_robot_basics.checks import CheckFailed, action, moves
 
@@ -31,11 +31,11 @@ def rejects(move_arm):
 
 
 CHECKS = [reaches, feedback, cancels, rejects]
-"""What the grade cells do, in their order."""
+"""The checks, in the order of the grade cells."""
 
 
 def failures():
-    """Run all of them; what each says that fails."""
+    """Run all checks; return the messages of those that fail, by name."""
     move_arm, found = action('/move_arm', MoveArm), {}
     for check in CHECKS:
         try:

@@ -8,7 +8,7 @@ from playwright.sync_api import expect, sync_playwright
 
 PROGRAM = next(filter(None, map(shutil.which, ['chromium', 'chromium-browser'])), None)
 LONG = 120_000
-"""Milliseconds: what a slow machine may need for anything here; nothing is judged by it."""
+"""Milliseconds that a slow machine may need for any step; tests do not measure time with it."""
 expect.set_options(timeout=LONG)
 
 drives_chromium = [
@@ -19,14 +19,14 @@ drives_chromium = [
 
 @contextmanager
 def launched():
-    """Yield a browser, which ends with the `with`."""
+    """Yield a browser, which is closed at the end of the block."""
     with several_launched(1) as (browser,):
         yield browser
 
 
 @contextmanager
 def several_launched(number):
-    """Yield so many browsers, each a program of its own, which end with the `with`."""
+    """Yield several browsers, each a separate process, closed at the end of the block."""
     with sync_playwright() as playwright, ExitStack() as stack:
         chromium = playwright.chromium
         browsers = []

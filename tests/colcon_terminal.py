@@ -1,4 +1,4 @@
-"""A terminal of the course in which colcon builds."""
+"""A terminal of the course in which colcon builds packages."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""What came in for the toy lesson, and what `./course collect` made of it."""
+"""Files handed in for the toy lesson, and what `./course collect` makes of them."""
 
 from course_maker import TOY
 
@@ -13,12 +13,12 @@ def write(path, content):
 
 
 def rows(course, source, **options):
-    """What became of each file: outcome by path."""
+    """Return the outcome of each file, by path."""
     return {row.path: row.outcome for row in collect(course, source, **options)}
 
 
 def tree(folder):
-    """All that lies in a folder: each file's path and content."""
+    """Return the content of each file in a folder, by path."""
     found = sorted(path for path in folder.rglob('*') if path.is_file())
     return {str(path.relative_to(folder)): path.read_text() for path in found}
 

@@ -1,4 +1,4 @@
-"""What every test session needs: a ROS domain of its own, and kernels that know of no pytest."""
+"""What every test session needs: a ROS domain of its own, kernels that do not notice pytest."""
 
 import asyncio
 import os
@@ -21,7 +21,7 @@ from my_robot_basics.session import classroom
 
 from grader.authoring import release
 from grader.kernels.isolation import TRUST, missing
-from tests import ordinary, preloaded, tiers  # also where nbval runs with this as a plugin
+from tests import ordinary, preloaded, tiers  # absolute, as nbval runs with this as a plugin, too
 
 if TYPE_CHECKING:
     from grading_kernels import Spares
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
     from grader.kernels.kernels import GradingKernel
     from grader.sandbox.sandbox import Sandbox
 
-# a busy machine fails no test
+# a test must not fail because the machine is busy
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile('busy')
 
 
-# each new database asks a program, which takes 2 s, for what is always the same
+# for each new database, nbgrader runs a program for 2 s, always with the same result
 nbgrader.api.get_alembic_version = cache(nbgrader.api.get_alembic_version)
 
 UNTESTED = pytest.StashKey[list]()
-"""The tests that a machine without a sandbox leaves out."""
+"""The tests that are left out on a machine without a sandbox."""
 
 LONG = (
     *('checks_relays_lost', 'sample_class', 'browser', 'checks_sampling', 'nbgrader_commands'),
@@ -53,8 +53,8 @@ LONG = (
     *('ros2_service', 'rooms', 'bundle', 'feedback', 'collect', 'report', 'live_arm'),
     *('live_interrupts', 'course', 'checks_relays', 'sandbox_share', 'kernel_messages'),
 )
-"""Files that take longest come first: begun at the end, one would be waited for alone. Those that
-keep processors busy stand beside those that wait: all at once, each would take longer."""
+"""The files that take longest run first: if one began last, all workers would wait for it. Files
+that keep processors busy alternate with those that wait: together, each would take longer."""
 
 
 LONG_LESSONS = ('12_package', '09_actions', '11_parameters', '07_common_errors', '08_services')
@@ -62,7 +62,7 @@ LONG_LESSONS = ('12_package', '09_actions', '11_parameters', '07_common_errors',
 
 GUARD = pytest.StashKey[tiers.Guard]()
 FOLDERS = pytest.StashKey[list[Path]]()
-"""What a session has made for itself: the workspace, what Validate remembers, what is shared."""
+"""Folders made for the session: for the workspace, for Validate's records, for shared files."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -80,7 +80,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    # even to import what is not run takes seconds
+    # even importing files that are not run takes seconds
     return (config.getoption('--quick') and tiers.starts_all(collection_path)) or None
 
 
@@ -108,7 +108,7 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
-    item.config.stash[GUARD].running = None  # what a test leaves may take what it takes to end
+    item.config.stash[GUARD].running = None  # the end of a test's processes may take any time
     yield
     item.config.stash[GUARD].end()
 
@@ -117,7 +117,7 @@ def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
 def pytest_runtest_setup(item: pytest.Item) -> None:
     item.config.stash[GUARD].begin(item)
     if item.path.suffix == '.ipynb':
-        # its kernel is started next: what another lesson has written is not there
+        # its kernel starts next: it must not see what another lesson has built
         workspace = item.config.stash[FOLDERS][0] / item.path.stem
         os.environ['MY_ROBOT_BASICS_WORKSPACE'] = str(workspace)
     if item.get_closest_marker('isolation') and missing():
@@ -126,7 +126,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 def pytest_terminal_summary(terminalreporter: object, config: pytest.Config) -> None:
     if config.getoption('--no-isolation') and missing():
-        # xdist's workers know how many, and have no summary
+        # xdist's workers know the number, but only the main process prints a summary
         untested = len(config.stash.get(UNTESTED, [])) or 'all'
         terminalreporter.section('not tested', yellow=True)
         terminalreporter.line(f'{untested} tests of the sandbox: {missing()}')
@@ -139,30 +139,30 @@ def pytest_configure(config: pytest.Config) -> None:
     elif quick:
         config.option.markexpr = 'not slow and not starts'
     config.stash[GUARD] = tiers.Guard(refuses=quick)
-    if not quick:  # that tier starts no server
+    if not quick:  # the quick tier starts no fork server
         release.subprocess = preloaded
     if config.getoption('--no-isolation'):
         os.environ[TRUST] = '1'
-    # a session in the background ignores Ctrl-C, and so would all that it starts
+    # a session in the background ignores Ctrl-C, and its child processes would inherit that
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    # and one below nohup the end of its terminal
+    # a session under nohup ignores SIGHUP
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    # what a student's terminal has not: programs here would print sooner than theirs
+    # a student's terminal does not set it: programs would print sooner here
     os.environ.pop('PYTHONUNBUFFERED', None)
-    # colcon's builds warn where somebody has set it
+    # colcon's builds warn if it is set
     os.environ.pop('PYTHONDONTWRITEBYTECODE', None)
-    sys.dont_write_bytecode = False  # else each xdist worker would compile every test, every time
-    # once in each xdist worker, too: two workers do not discover each other's nodes
+    sys.dont_write_bytecode = False  # or each xdist worker would compile all tests each time
+    # in each xdist worker, too, so that two workers do not discover each other's nodes
     folders = config.stash[FOLDERS] = [Path(tempfile.mkdtemp(prefix='ros ws '))]
     os.environ['MY_ROBOT_BASICS_WORKSPACE'] = str(folders[0])
-    # Validate writes there what has passed
+    # Validate records there which exercises have passed
     folders.append(Path(tempfile.mkdtemp(prefix='data ')))
     os.environ['XDG_DATA_HOME'] = str(folders[1])
-    if not hasattr(config, 'workerinput'):  # what is made once, also for xdist's workers
+    if not hasattr(config, 'workerinput'):  # the main process, which shares this with its workers
         folders.append(Path(tempfile.mkdtemp(prefix='shared-')))
         os.environ['MY_ROBOT_BASICS_TESTS'] = str(folders[2])
     if config.getoption('--nbval'):
-        from tests import lesson_kernels  # all that nbval imports, which other sessions need not
+        from tests import lesson_kernels  # imports nbval, which other sessions do not need
 
         folders.append(Path(tempfile.mkdtemp(prefix='zmq-')))
         lesson_kernels.prepare(folders[-1])
@@ -180,7 +180,7 @@ LEAVE_SEC = 10.0
 
 @pytest.fixture(scope='module', autouse=True)
 def nobody_stays(request: pytest.FixtureRequest) -> Iterator[None]:
-    """See that a file of tests leaves no node to the next one in the same domain."""
+    """Check that a file of tests leaves no nodes to the next file in the same ROS domain."""
     guard = request.config.stash[GUARD]
     before = guard.contexts
     yield
@@ -202,7 +202,7 @@ def _answers() -> dict[signal.Signals, object]:
 
 @pytest.fixture(scope='module', autouse=True)
 def as_the_file_before() -> Iterator[None]:
-    """See that a file of tests answers no signal for the files behind it."""
+    """Check that a file of tests does not change signal handlers for the files after it."""
     former = _answers()
     yield
     left = _answers()
@@ -213,22 +213,22 @@ def as_the_file_before() -> Iterator[None]:
 
 @pytest.fixture
 def signals() -> Iterator[None]:
-    """Put back what nbclient answers Ctrl-C with, and leaves where a kernel does not start."""
+    """Restore the signal handlers that nbclient sets, and leaves if a kernel does not start."""
     former = _answers()
     yield
     for number, answer in former.items():
         signal.signal(number, answer)
 
 
-# ipykernel leaves the logs of C code alone where it finds PYTEST_CURRENT_TEST, and every kernel
-# that a test starts would inherit it: notebooks would behave otherwise than for a student. A hook
-# cannot delete it: pytest sets it in the same step that runs the test.
+# ipykernel does not capture the output of C code if PYTEST_CURRENT_TEST is set, and every kernel
+# that a test starts would inherit it: notebooks would behave differently than for a student. A
+# hook can't delete it, because pytest sets it in the same step in which it runs the test.
 _pytest.runner._update_current_test_var = lambda item, when: None
 
 
 @pytest.fixture(scope='module')
 def loop() -> Iterator[asyncio.Runner]:
-    """What runs the coroutines of a file's tests, all in one event loop."""
+    """A runner for the coroutines of a file's tests, all in one event loop."""
     with asyncio.Runner() as runner:
         yield runner
 
@@ -236,8 +236,8 @@ def loop() -> Iterator[asyncio.Runner]:
 @pytest.fixture
 @tiers.starts
 def sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
-    """A sandbox of one test's own."""
-    from inside_sandbox import opened  # not before: most need no sandbox
+    """A sandbox for one test."""
+    from inside_sandbox import opened  # imported late: most tests need no sandbox
 
     with opened(loop) as sandbox:
         yield sandbox
@@ -246,7 +246,7 @@ def sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
 @pytest.fixture(scope='module')
 @tiers.starts
 def shared_sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
-    """A sandbox for all tests of a file that do it no harm."""
+    """A sandbox that all tests of a file share; they must not damage it."""
     from inside_sandbox import opened
 
     with opened(loop) as sandbox:
@@ -256,8 +256,8 @@ def shared_sandbox(loop: asyncio.Runner) -> Iterator['Sandbox']:
 @pytest.fixture
 @tiers.starts
 def own_kernel(loop: asyncio.Runner) -> Iterator['GradingKernel']:
-    """A kernel of one test's own."""
-    from grading_kernels import opened_kernel  # not before: most need no kernel
+    """A kernel for one test."""
+    from grading_kernels import opened_kernel  # imported late: most tests need no kernel
 
     with opened_kernel(loop) as kernel:
         yield kernel
@@ -266,7 +266,7 @@ def own_kernel(loop: asyncio.Runner) -> Iterator['GradingKernel']:
 @pytest.fixture(scope='module')
 @tiers.starts
 def spares(loop: asyncio.Runner) -> Iterator['Spares']:
-    """The kernels that tests of a file have left alive."""
+    """Kernels that survived earlier tests of the file."""
     from grading_kernels import Spares
 
     spares = Spares(loop)
@@ -276,14 +276,14 @@ def spares(loop: asyncio.Runner) -> Iterator['Spares']:
 
 @pytest.fixture
 def spare_kernel(spares: 'Spares') -> Iterator['GradingKernel']:
-    """A kernel for a cell that leaves nothing in it."""
+    """A kernel for a cell that leaves nothing behind in it."""
     with spares.kernel() as kernel:
         yield kernel
 
 
 @pytest.fixture
 def run_cell(loop: asyncio.Runner) -> Callable:
-    """What runs a cell in a kernel: `run_cell(kernel, code)`."""
+    """A function that runs a cell in a kernel: `run_cell(kernel, code)`."""
     from grading_kernels import runs_in
 
     return runs_in(loop)
@@ -291,21 +291,21 @@ def run_cell(loop: asyncio.Runner) -> Callable:
 
 @pytest.fixture(scope='module')
 def released(tmp_path_factory: pytest.TempPathFactory) -> 'Course':
-    """The course of one small lesson, released: for all tests of a file that do it no harm."""
-    from course_maker import released_course  # not before: most need no course
+    """The released course of one small lesson, shared by all tests of a file; do not change it."""
+    from course_maker import released_course  # imported late: most tests need no course
 
     return released_course(tmp_path_factory.mktemp('released'))
 
 
 @pytest.fixture
 def course(released: 'Course', tmp_path: Path) -> 'Course':
-    """That course, with an empty gradebook of one test's own; other files have it filled."""
+    """The released course with a new, empty gradebook; some files override this fixture."""
     return replace(released, gradebook=tmp_path / 'gradebook')
 
 
 @pytest.fixture
 def came_in(tmp_path: Path) -> Path:
-    """The folder that `./course collect` or `./course serve` takes submissions from."""
+    """The folder from which `./course collect` or `./course serve` takes submissions."""
     folder = tmp_path / 'came in'
     folder.mkdir()
     return folder
@@ -313,8 +313,8 @@ def came_in(tmp_path: Path) -> Path:
 
 @pytest.fixture(scope='module')
 def postgresql() -> 'Iterator[Server]':
-    """A server of Debian's package, for the tests of one module."""
-    from postgresql_server import running  # not before: most need no database
+    """A PostgreSQL server of Debian's package, for the tests of one module."""
+    from postgresql_server import running  # imported late: most tests need no database
 
     with running() as server:
         yield server
@@ -322,8 +322,8 @@ def postgresql() -> 'Iterator[Server]':
 
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever lies in the folder of `./course serve` is whole."""
-    from grader.serving import inbound  # not before: most serve nothing
+    """Let `./course serve` take files at once, without waiting until they are unchanged."""
+    from grader.serving import inbound  # imported late: most tests serve nothing
 
     monkeypatch.setattr(inbound, 'QUIET_SEC', -1.0)
 
@@ -331,10 +331,10 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 @tiers.starts
 def run() -> Iterator[Callable]:
-    """`live.run`; all nodes that it started are stopped after the test, and their threads."""
+    """`live.run`; all nodes that it started, and their threads, are stopped after the test."""
     from nodes.running import stop_all
 
-    from my_robot_basics import live  # not before: most need no rclpy
+    from my_robot_basics import live  # imported late: most tests need no rclpy
 
     yield live.run
     stop_all()
@@ -342,8 +342,8 @@ def run() -> Iterator[Callable]:
 
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Give the robot's clock no limit of wall time: what is exact must be so on any machine."""
-    from my_robot_basics.checks import (  # not before: most need no rclpy
+    """Remove wall time limits of the simulated clock: exact results must not depend on load."""
+    from my_robot_basics.checks import (  # imported late: most tests need no rclpy
         barriers,
         clock,
         clock_budget,

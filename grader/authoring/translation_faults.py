@@ -73,8 +73,8 @@ def _typography(text: str) -> Iterator[str]:
 def _not_emphasised(text: str) -> Iterator[str]:
     """Yield * and ** that markdown does not read as emphasis.
 
-    # a placeholder without a name, e.g. the s of a plural, is not needed in every language
-    a mark; between Chinese words there are no spaces.
+    Beside a punctuation mark, as in `**节点：**是`, they count only if the other side is a
+    space or a mark; between Chinese words there are no spaces.
     """
     for stars, kind in ((r'\*\*', 'bold'), (r'(?<!\*)\*(?!\*)', 'italic')):
         for number, found in enumerate(re.finditer(stars, text)):
