@@ -1,4 +1,4 @@
-"""A machine with a small course on it, and `./course` called there: what its tests share."""
+"""A machine with a small course, on which tests call `./course`."""
 
 import os
 import re
@@ -26,7 +26,7 @@ case $* in
 esac
 """
 )
-"""A Python that runs the launcher, and of all else only writes down what it is asked for."""
+"""A fake Python: it runs the launcher, and only records every other call."""
 UV = """\
 echo "uv $*" >>"$CALLS"
 case $1 in venv) mkdir -p "$4/bin" && cp "$(command -v python3)" "$4/bin/python" ;; esac
@@ -34,7 +34,7 @@ case $1 in venv) mkdir -p "$4/bin" && cp "$(command -v python3)" "$4/bin/python"
 
 
 class Machine:
-    """A small course in a folder with a space in its name, and all the programs there are."""
+    """A small course in a folder with a space in its name, and the only programs on its PATH."""
 
     def __init__(self, folder):
         self.root = folder / 'my course'
@@ -64,12 +64,12 @@ class Machine:
         (package.parent / 'resource').mkdir()
         (package.parent / 'resource/my_robot_basics').touch()
         pins = re.split(r'^(?=\w)', (ROOT / 'environment.txt').read_text(), flags=re.MULTILINE)
-        # empy exists as source alone
+        # empy exists only as a source archive
         needed = [pin for pin in pins if pin.startswith(('pip==', 'setuptools==', 'empy=='))]
         (self.root / 'environment.txt').write_text(''.join(needed))
 
     def program(self, name, script):
-        """Put a program in the PATH, or another in its place."""
+        """Put a program on the PATH, or replace it."""
         path = self.programs / name
         path.unlink(missing_ok=True)
         path.write_text(f'#!/bin/sh\n{script}\n')
@@ -96,7 +96,7 @@ class Machine:
 
 
 def the_one_sentence(run):
-    """The last line, where nothing but progress and notes of the script's own came before."""
+    """Return the last line of stderr; check that only progress messages precede it."""
     lines = run.stderr.splitlines()
     assert run.returncode == 1, run
     assert all(line.startswith(('course: setting up', '  ')) for line in lines[:-1]), run.stderr
@@ -106,7 +106,7 @@ def the_one_sentence(run):
 
 
 def with_programs(bare):
-    """Give a machine a Python and a uv that only write down what they are asked for."""
+    """Give a machine a fake Python and a fake uv, which only record their calls."""
     bare.program('python3', PYTHON)
     bare.program('uv', UV)
     return bare

@@ -1,4 +1,4 @@
-"""Make a small course in a temporary folder: one lesson of two exercises, without a robot."""
+"""Make a small course in a temporary folder: a lesson with two exercises, without a robot."""
 
 import fcntl
 import os
@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import nbformat
-from given_verdicts import executed as executed  # most who make a course need it, too
+from given_verdicts import executed as executed  # most modules that make a course need it
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
@@ -22,7 +22,7 @@ PIXEL = (
 
 
 def make_course(root: Path) -> Course:
-    """Return a course in `root` whose one lesson is not released yet."""
+    """Return a course in `root` whose only lesson is not released yet."""
     course = Course.at(root)
     course.root.mkdir(exist_ok=True)
     shutil.copy(ROOT / 'nbgrader_config.py', course.root)
@@ -31,9 +31,9 @@ def make_course(root: Path) -> Course:
 
 
 def released_course(root: Path) -> Course:
-    """Return a course in `root` whose lesson is released and known to its gradebook.
+    """Return a course in `root` whose lesson is released and registered in its gradebook.
 
-    Both take long, and come to the same: they are done for the first one, and copied.
+    Both take long and always give the same: they are done once per session, and copied.
     """
     shared = Path(os.environ['MY_ROBOT_BASICS_TESTS'])
     made = shared / 'released_course'
@@ -49,7 +49,7 @@ def released_course(root: Path) -> Course:
 
 
 def with_own_database(released: Course, folder: Path) -> Course:
-    """Return a released course with a gradebook in `folder` in which nothing was handed in."""
+    """Return a released course with an empty gradebook in `folder`."""
     gradebook = folder / 'gradebook'
     gradebook.mkdir()
     shutil.copyfile(released.database, gradebook / released.database.name)
@@ -57,7 +57,7 @@ def with_own_database(released: Course, folder: Path) -> Course:
 
 
 def add_lesson(course: Course, name: str) -> None:
-    """Make one more lesson of the same cells, which the gradebook knows and nobody has got."""
+    """Add a lesson with the same cells, registered in the gradebook but not released."""
     shutil.copytree(course.source_path(TOY).parent, course.root / 'solutions' / name)
     (course.root / 'solutions' / name / f'{TOY}.ipynb').rename(course.source_path(name))
     register(course, name)
@@ -126,7 +126,7 @@ def _check(title: str, number: int) -> str:
 
 
 def answered(course: Course, answer: str, *, explained: str = '') -> NotebookNode:
-    """Return the released lesson with an answer typed in, as a student submits it."""
+    """Return the released lesson with an answer, as a student submits it."""
     notebook = course.release(TOY)
     by_id = {cell.id: cell for cell in notebook.cells}
     by_id['double'].source = answer

@@ -1,4 +1,4 @@
-"""Schedulers and workers of Dask in processes of their own, for the tests that need them."""
+"""Schedulers and workers of Dask in separate processes, for tests."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""A lesson whose exercises ask for a function that doubles, as a student handed it in."""
+"""A lesson whose exercises ask for functions that double, as a student handed it in."""
 
 import nbformat
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
@@ -20,7 +20,7 @@ def marked(name, source, *, new=new_code_cell, **marks):
 
 
 def lesson(*exercises, check=CHECK, setup='from my_robot_basics.live import reset'):
-    """Return the instructor's notebook; the exercise `a` asks for `double_a`, and so on."""
+    """Return the instructor's notebook; exercise `a` asks for `double_a`, and so on."""
     cells = [new_code_cell(setup, id='setup')]
     for name in exercises:
         cells += [
@@ -36,7 +36,7 @@ def lesson(*exercises, check=CHECK, setup='from my_robot_basics.live import rese
 
 
 def handed_in(source, *, after=(), before=(), **answers):
-    """Return the restored notebook of a student who answered so, with own cells around."""
+    """Return a student's restored notebook with these answers, and own cells before and after."""
     template = make_template(source, source)
     submitted = nbformat.from_dict(source)
     for cell in submitted.cells:

@@ -1,4 +1,4 @@
-"""Rooms without kernels, in which checks come to what a test says."""
+"""Rooms without kernels, in which a test decides the results of checks."""
 
 import asyncio
 import time
@@ -9,7 +9,7 @@ from my_robot_basics.validate.outputs import CellRun
 
 
 class FakeRooms:
-    """Rooms without kernels: what happens in them is a list of what each check comes to."""
+    """Rooms without kernels: `checks` has the result of each check, in order."""
 
     checks: list
     opened = 0

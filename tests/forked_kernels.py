@@ -1,4 +1,4 @@
-"""Kernels that are forked into sandboxes of their own, for the tests of how that is done."""
+"""Kernels that are forked into sandboxes of their own, for tests of forking."""
 
 import itertools
 import os
@@ -14,13 +14,13 @@ from grader.sandbox.sandbox import Sandbox
 
 FIRST_SLOT = 1000 + os.getpid() % 400 * 100
 SLOTS = itertools.count(FIRST_SLOT)
-"""None that a claimed ROS domain gives, or another process of the tests uses."""
+"""Slots that differ from claimed ROS domains and from those of other test processes."""
 DOMAIN = 0
-"""No kernel of these makes a node."""
+"""A domain that no test uses: these kernels make no nodes."""
 
 
 async def opened(*, room='student', seed='', fresh=False):
-    """Return a sandbox and a kernel in it; it is forked, unless it has to be started `fresh`."""
+    """Return a sandbox and a kernel in it; the kernel is forked, or started if `fresh`."""
     sandbox = Sandbox(slot=next(SLOTS))
     await sandbox.open()
     kernel = GradingKernel(room=room, domain_id=DOMAIN, seed=seed, paths=sandbox.paths(room))
@@ -52,12 +52,12 @@ def printed(loop, kernel, code):
 
 
 def process_of(kernel):
-    """Return the kernel's process as the machine knows it."""
+    """Return the kernel's process, as seen from outside the sandbox."""
     process = kernel._manager.provisioner.process
     info = Path(f'/proc/self/fdinfo/{process._kernel}').read_text()
     return psutil.Process(int(re.search(r'^Pid:\s*(\d+)', info, re.MULTILINE)[1]))
 
 
 def server_of(kernel):
-    """Return the process that the kernel was forked from; its parent is one that waits for it."""
+    """Return the fork server: the parent of the process that waits for the kernel."""
     return process_of(kernel).parent().parent()

@@ -1,4 +1,4 @@
-"""What a machine has on which nobody has used this course yet."""
+"""Simulate a machine on which this course was never used."""
 
 import os
 import re
@@ -16,7 +16,7 @@ COMPILERS = re.compile(
 
 
 def programs_without_compilers(folder: Path) -> Path:
-    """Return a new folder with this machine's programs, but for those that build others."""
+    """Return a new folder with links to this machine's programs, but not to compilers."""
     folder.mkdir()
     for place in ('/usr/local/bin', '/usr/bin', '/bin'):
         for program in Path(place).iterdir():
@@ -27,7 +27,7 @@ def programs_without_compilers(folder: Path) -> Path:
 
 
 def fresh_clone(folder: Path) -> Path:
-    """Return a new folder with all files of the course, and nothing that was made from them."""
+    """Return a new folder with all tracked files of the course, and no generated ones."""
     tracked = subprocess.run(['git', 'ls-files', '-z'], cwd=ROOT, capture_output=True, check=True)
     for name in tracked.stdout.decode().split('\0')[:-1]:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -36,7 +36,7 @@ def fresh_clone(folder: Path) -> Path:
 
 
 def fresh_environment(folder: Path) -> dict[str, str]:
-    """Return the variables of a fresh machine: no .venv, no compiler, a home in `folder`."""
+    """Return the environment of a fresh machine: no .venv, no compiler, a home in `folder`."""
     home, tools = folder / 'home', folder / 'tools'
     home.mkdir()
     tools.mkdir()

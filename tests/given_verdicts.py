@@ -1,4 +1,4 @@
-"""Verdicts without rooms. A process that grades imports this sooner than what makes courses."""
+"""Verdicts without rooms; a separate module, so that worker processes import little."""
 
 from nbformat import NotebookNode
 from nbformat.v4 import new_output
@@ -7,7 +7,7 @@ from grader.notebook.restore import KEY
 
 
 def executed(notebook: NotebookNode, reasons: dict[str, str | None]) -> NotebookNode:
-    """Stand in for the rooms: give each grade cell a verdict; None is a pass, '?' is ungraded."""
+    """Replace the rooms: give each grade cell a verdict; None passes, '?' is ungraded."""
     for cell in notebook.cells:
         marks = cell.metadata.get('nbgrader', {})
         if marks.get('grade') and cell.cell_type == 'code':

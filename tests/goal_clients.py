@@ -1,4 +1,4 @@
-"""What the grade cells ask of a client of /move_arm."""
+"""The grade cells' checks of a client of /move_arm."""
 
 import random
 
@@ -15,7 +15,7 @@ ENDS = {'asked_on': '/goal_pose', 'to': '/move_arm_client/outcome', 'cancelled_o
 
 
 def check_outcomes():
-    """What the grade cell `move_arm_client_outcomes` does."""
+    """Do what the grade cell `move_arm_client_outcomes` does."""
     numbers = random.Random(3)
     with action_server('/move_arm', MoveArm, **ENDS) as server:
         replies.expect_outcomes(
@@ -27,7 +27,7 @@ def check_outcomes():
 
 
 def check_cancels():
-    """What the grade cell `move_arm_client_cancels` does."""
+    """Do what the grade cell `move_arm_client_cancels` does."""
     numbers = random.Random(4)
     with action_server('/move_arm', MoveArm, **ENDS) as server:
         replies.expect_cancel(server, (1.2, -0.6))

@@ -1,4 +1,4 @@
-"""Kernels of the grader that no sandbox is around, for the tests of one kernel."""
+"""Kernels of the grader without a sandbox, for tests of a single kernel."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ import psutil
 from grader.kernels.kernels import GradingKernel
 
 DOMAIN = 0
-"""None of them makes a node."""
+"""A domain that no test uses: these kernels make no nodes."""
 IGNORES = """
 import signal, time
 signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -26,7 +26,7 @@ def opened_kernel(loop) -> Iterator[GradingKernel]:
 
 
 class Spares:
-    """The kernel that the last test has left, if one has."""
+    """Keeps the kernel that the last test used, if it is still alive."""
 
     def __init__(self, loop):
         self.loop = loop
@@ -34,7 +34,7 @@ class Spares:
 
     @contextmanager
     def kernel(self) -> Iterator[GradingKernel]:
-        """A kernel for a cell that leaves nothing in it: where it lives on, the next has it."""
+        """Yield a kernel for a cell that leaves nothing behind; the next test may reuse it."""
         kernel = self.left.pop() if self.left else GradingKernel(room='student', domain_id=DOMAIN)
         if not kernel.alive:
             self.loop.run(kernel.start())
@@ -50,7 +50,7 @@ class Spares:
 
 
 def runs_in(loop):
-    """Return what runs a cell in a kernel."""
+    """Return a function that runs a cell in a kernel."""
 
     def run(kernel, code, timeout_sec=60.0, **more):
         return loop.run(kernel.run(code, timeout_sec=timeout_sec, **more))
@@ -63,7 +63,7 @@ def text_of(cell_run):
 
 
 def processes_of(kernel):
-    """Return whatever runs with the kernel's own environment, the kernel itself included."""
+    """Return the processes with the kernel's environment, including the kernel itself."""
     marker = str(kernel.folder)
     found = []
     for process in psutil.process_iter():

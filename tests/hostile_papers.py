@@ -1,4 +1,4 @@
-"""What is handed in to stop whoever reads it."""
+"""Submissions that try to stop the program that reads them."""
 
 import json
 
@@ -14,7 +14,7 @@ def notebook_text(*cells, **more):
 LARGE = ','.join(['{"cells":[{}]}'] * 60_000)
 
 STOPS_DATEUTIL = '1:99999999999999999999999999999.5'
-"""A time on which dateutil raises what nobody expects."""
+"""A time for which dateutil raises an unexpected exception."""
 ONE_MEGABYTE = {
     'objects': f'{{"nbformat": 4, "cells": [{",".join(["{}"] * 333_000)}]}}',
     'worksheets': f'{{"nbformat": 3, "worksheets": [{LARGE}]}}',

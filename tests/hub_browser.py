@@ -1,4 +1,4 @@
-"""What somebody does on a hub with a browser alone: log in, run code, fetch, submit, read."""
+"""Use a hub with a browser only: log in, run code, fetch, submit, read feedback."""
 
 import re
 import shutil
@@ -30,8 +30,8 @@ END_ALL = """async () => {
 
 
 def log_in(browser, machine, name):
-    """Log in with the password on this machine, in a new browser; return the page."""
-    # what is in the page may be driven from it: a user's own setting, in their own home
+    """Log in with the password on this machine, in a new browser context; return the page."""
+    # a setting in the user's home lets the test control JupyterLab in the page
     settings = Path('/home', name, '.jupyter/jupyter_lab_config.json')
     settings.parent.mkdir()
     settings.write_text('{"LabApp": {"expose_app_in_browser": true}}', encoding='utf-8')
@@ -48,31 +48,31 @@ def log_in(browser, machine, name):
 
 
 def wait_for_lab(page):
-    """Wait until JupyterLab has come up, and is open to tests."""
+    """Wait until JupyterLab has started and can be controlled by the test."""
     page.wait_for_function('window.jupyterapp?.restored.then(() => true)')
 
 
 class Kernel:
-    """A kernel of a student's own, begun in their JupyterLab: what runs where, they decide."""
+    """A kernel that a student starts in JupyterLab, to run any code."""
 
     def __init__(self, page):
         self.page = page
         self.number = page.evaluate(START)
 
     def run(self, code):
-        """Run code to its end; return what it said."""
+        """Run code to its end; return its output."""
         status, said = self.page.evaluate(RUN, [self.number, code])
         assert status == 'ok', said
         return said
 
 
 def end_kernels(page):
-    """End what `Kernel` has begun in a page."""
+    """Shut down the kernels that `Kernel` has started in a page."""
     page.evaluate(END_ALL)
 
 
 class AssignmentList:
-    """The panel of that name, in JupyterLab."""
+    """JupyterLab's panel Assignment List."""
 
     def __init__(self, page):
         self.page = page
@@ -80,25 +80,25 @@ class AssignmentList:
         page.get_by_role('menuitem', name='Assignment List').click()
 
     def row(self, state, lesson):
-        """The row of a lesson that was `released`, `fetched` or `submitted`."""
+        """Return the row of a lesson that was `released`, `fetched` or `submitted`."""
         return self.page.locator(f'#{state}_assignments_list > .list_item', has_text=lesson)
 
     def press(self, state, lesson, name):
-        """Press the button of a row."""
+        """Press a button in a row."""
         self.row(state, lesson).get_by_role('button', name=name, exact=True).click()
 
     def fetch(self, lesson):
-        """Fetch a lesson, and wait for it."""
+        """Fetch a lesson, and wait until it is listed as fetched."""
         self.press('released', lesson, 'Fetch')
         expect(self.row('fetched', lesson)).to_be_visible()
 
     def submit(self, lesson):
-        """Hand a lesson in, and wait until it is listed so."""
+        """Submit a lesson, and wait until it is listed as submitted."""
         self.press('fetched', lesson, 'Submit')
         expect(self.row('submitted', lesson)).to_be_visible()
 
     def open_feedback(self, lesson):
-        """Fetch the feedback of what was handed in last, and open its page; return its words."""
+        """Fetch the feedback of the last submission, and open its page; return its text."""
         self.press('submitted', lesson, 'Fetch Feedback')
         self.row('submitted', lesson).get_by_text('(view feedback)').first.click()
         self.page.locator('.jp-DirListing-item', has_text=f'{lesson}.html').dblclick()
@@ -110,7 +110,7 @@ class AssignmentList:
 
 
 def answer(lesson, cell_id, text):
-    """Write an answer, and save."""
+    """Write an answer, and save the notebook."""
     lesson.page.evaluate(
         """async ([index, text]) => {
             const {content, context} = jupyterapp.shell.currentWidget;
@@ -129,9 +129,9 @@ def open_formgrader(page):
 
 
 def score_by_hand(formgrader, lesson, cell_id, points):
-    """Give points for each student's text, in the formgrader.
+    """Give points for each student's text answer, in the formgrader.
 
-    `points` has what each text contains, and what it then earns and is told.
+    `points` has, by a part of the text, its points and the comment.
     """
     for number in range(1, len(points) + 1):
         formgrader.get_by_role('link', name='Manual Grading').first.click()

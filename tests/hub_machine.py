@@ -1,4 +1,4 @@
-"""A JupyterHub as deploy/jupyterhub/ sets it up, with users of this machine; all ends with it."""
+"""A JupyterHub as deploy/jupyterhub/ installs it, with temporary users of this machine."""
 
 import os
 import shutil
@@ -22,7 +22,7 @@ from fresh_machine import KEPT, ROOT, fresh_clone
 
 DEPLOY = ROOT / 'deploy/jupyterhub'
 PATH = '/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin'
-"""As in jupyterhub.service."""
+"""The PATH of jupyterhub.service."""
 UP_SEC = STOP_SEC = 60.0
 PASSWORD = 'only-while-this-test-runs'
 
@@ -33,26 +33,26 @@ needs_root = pytest.mark.skipif(
 
 @dataclass(frozen=True)
 class HubMachine:
-    """A hub that runs, its users, and where its parts lie."""
+    """A running hub, its users, and the paths of its parts."""
 
     folder: Path
-    """What `install` was told: the hub, its environment and class.toml."""
+    """The folder given to `install`: the hub, its environment and class.toml."""
     instructor: str
     students: tuple[str, ...]
 
     @property
     def settings(self) -> dict[str, str]:
-        """What class.toml says."""
+        """The content of class.toml."""
         return tomllib.loads((self.folder / 'class.toml').read_text(encoding='utf-8'))
 
     @property
     def address(self) -> str:
-        """Where browsers connect."""
+        """The URL for browsers."""
         return self.settings['address']
 
     @property
     def checkout(self) -> Path:
-        """The instructor's folder."""
+        """The instructor's checkout of the course."""
         return Path(self.settings['checkout'])
 
     @property
@@ -62,7 +62,7 @@ class HubMachine:
 
     @contextmanager
     def serving(self) -> Iterator[Path]:
-        """Let `./course serve` of the instructor watch the exchange; give its log."""
+        """Run the instructor's `./course serve` on the exchange; yield its log."""
         log = self.folder / 'serve.log'
         inbound = self.of_course / 'inbound'
         command = [*as_user(self.instructor), './course', 'serve', inbound]
@@ -78,36 +78,36 @@ class HubMachine:
 
 
 def outside() -> dict[str, str]:
-    """Return the variables of a service: none of a test session or of another environment."""
+    """Return a service's environment, without variables of a test session or a .venv."""
     names = {name for name in os.environ if name.startswith(('PIP_', 'UV_', 'NODE_'))}
     kept = {name: os.environ[name] for name in {*KEPT, *names} if name in os.environ}
     return kept | {'PATH': PATH, 'HOME': '/root', 'LC_ALL': 'C.UTF-8'}
 
 
 def as_user(name: str) -> list[str]:
-    """Return what runs the command behind it as a user of this machine."""
+    """Return the beginning of a command that runs the rest as a user of this machine."""
     return ['runuser', '-u', name, '--', 'env', f'HOME=/home/{name}']
 
 
 @contextmanager
 def user(name: str, *groups: str) -> Iterator[None]:
-    """Give this machine a user, as the README says, and take them back with all of theirs."""
+    """Create a user on this machine, as the README says; remove it with its files at the end."""
     add = ['useradd', '--create-home', '--key', 'HOME_MODE=0700', '--shell', '/bin/bash']
     subprocess.run([*add, *(['--groups', *groups] if groups else []), name], check=True)
     try:
         subprocess.run(['chpasswd'], input=f'{name}:{PASSWORD}\n', text=True, check=True)
         yield
     finally:
-        for process in psutil.process_iter(['username']):  # a user with processes cannot go
+        for process in psutil.process_iter(['username']):  # userdel refuses if processes run
             if process.info['username'] == name:
                 process.kill()
-        shutil.rmtree(f'/home/{name}')  # userdel would lock the list of users for as long
+        shutil.rmtree(f'/home/{name}')  # faster here: userdel locks the user database meanwhile
         subprocess.run(['userdel', '--force', name], check=True)
 
 
 @contextmanager
 def group(name: str) -> Iterator[None]:
-    """Give this machine a group, and take it back."""
+    """Create a group on this machine, and remove it at the end."""
     subprocess.run(['groupadd', name], check=True)
     try:
         yield
@@ -117,13 +117,13 @@ def group(name: str) -> Iterator[None]:
 
 @contextmanager
 def hub_machine(number_of_students: int = 2) -> Iterator[HubMachine]:
-    """Set a hub up by `install`, from the files of this checkout, and run it."""
+    """Set up a hub by `install`, from the files of this checkout, and run it."""
     mine = os.getpid()
     students = tuple(f'{name}{mine}' for name in ('ada', 'bob'))
     students += tuple(f'eve{mine}no{number}' for number in range(2, number_of_students))
     instructor = f'ruth{mine}'
     with ExitStack() as stack:
-        # rooms show no /tmp of others, and nobody else can look into pytest's folders
+        # rooms hide /tmp, and other users can't read pytest's folders
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(dir='/srv', prefix='hub-')))
         folder.chmod(0o755)
         stack.enter_context(group(f'class{mine}'))
@@ -138,7 +138,7 @@ def hub_machine(number_of_students: int = 2) -> Iterator[HubMachine]:
 
 
 def write_settings(machine: HubMachine, students: str) -> None:
-    """Write class.toml: as it comes, with names and folders of this hub alone."""
+    """Write class.toml: the original, with this hub's names and folders."""
     settings = tomlkit.parse((DEPLOY / 'class.toml').read_text(encoding='utf-8'))
     with socket.create_server(('127.0.0.1', 0)) as free:
         settings['address'] = f'http://127.0.0.1:{free.getsockname()[1]}'
@@ -150,13 +150,13 @@ def write_settings(machine: HubMachine, students: str) -> None:
 
 
 def set_up(machine: HubMachine) -> None:
-    """Give the instructor a checkout, and let it set the hub up."""
+    """Give the instructor a checkout, and install the hub from it."""
     fresh_clone(machine.checkout)
     for made in (machine.checkout, machine.checkout.parent):
         subprocess.run(['chown', '-R', machine.instructor, made], check=True)
     tools = machine.folder / 'tools'
     tools.mkdir()
-    shutil.copy(Path(sys.executable).with_name('uv'), tools)  # pip needs minutes more
+    shutil.copy(Path(sys.executable).with_name('uv'), tools)  # with pip it takes minutes longer
     done = subprocess.run(
         [machine.checkout / 'deploy/jupyterhub/install', '--no-start', machine.folder],
         env=outside() | {'PATH': f'{tools}:{PATH}'},
@@ -169,7 +169,7 @@ def set_up(machine: HubMachine) -> None:
 
 @contextmanager
 def running(machine: HubMachine) -> Iterator[None]:
-    """Run the hub, as its service does, and end it with all that it has started."""
+    """Run the hub as its service does; end it and all that it has started."""
     command = ['../venv/bin/jupyterhub', '-f', '../jupyterhub_config.py']
     said = machine.folder / 'log'
     with said.open('w') as log:

@@ -1,4 +1,4 @@
-"""What the users of a hub run in kernels: to be heard, to disturb somebody else, to build."""
+"""Code that a hub's users run in kernels: publish, disturb another student, build a package."""
 
 MESSAGES = 20
 MEANS_IT = """
@@ -12,7 +12,7 @@ os.environ |= {
 import subprocess, threading, time, rclpy
 from std_msgs.msg import String
 """
-"""Who wants to meet others' nodes on one machine sets this up, wherever they are."""
+"""The settings of a user who tries to reach nodes of other users on the same machine."""
 RUN = (
     MEANS_IT
     + """
@@ -25,7 +25,7 @@ node.create_timer(0.05, lambda: talks.publish(String(data='mine')))
 threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 """
 )
-"""A node that talks, and takes orders from whoever reaches it."""
+"""A node that publishes, and subscribes to orders that anyone may publish."""
 LIST = (
     MEANS_IT
     + """
@@ -40,7 +40,7 @@ while not own <= seen and time.monotonic() < at_most:
 print(*sorted(seen))
 """
 )
-"""Prints all nodes and topics, looked for until those of `name` are among them."""
+"""Prints all nodes and topics that are found; it repeats until those of `name` are among them."""
 LISTEN_AND_INJECT = (
     MEANS_IT
     + """
@@ -62,7 +62,7 @@ print(bool(listened), bool(reached))
 stranger.destroy_node()
 """.replace('{number}', str(MESSAGES))
 )
-"""Prints whether the talk was heard, and whether anybody has taken the orders."""
+"""Prints whether a message was received, and whether any subscriber acknowledged the orders."""
 LOOK_AROUND = """
 import os, pathlib
 print(os.listdir('/home'))
@@ -70,7 +70,7 @@ print(os.listdir('/tmp'))
 print({path.owner() for path in pathlib.Path('/proc').glob('[0-9]*')})
 print(pathlib.Path('/proc/net/unix').read_text().count('@'))
 """
-"""Prints which homes and files there are, whose processes, and how many abstract sockets."""
+"""Prints the homes and temporary files, the processes' owners, the number of abstract sockets."""
 BUILD = """
 import os, pathlib, shutil, subprocess
 from my_robot_basics.live.workspace import BUILD, make_workspace
@@ -83,11 +83,11 @@ print('built', done.stdout.split()[-1])
 bundle = pathlib.Path(os.environ['COURSE_TERMINAL']).parents[3]
 shutil.copytree(bundle / 'notebooks/03_publisher', 'arm')
 """
-"""Builds the workspace as in a terminal, and says where its package is; takes lesson 3, too."""
+"""Builds the workspace as in a terminal, prints the package's path, and copies lesson 3."""
 COMMAND = """
 import subprocess
 done = subprocess.run(%r, shell=True, stdout=-1, stderr=-2, text=True)
 print(done.stdout)
 assert done.returncode == 0
 """
-"""Runs a command, says what that says, and fails where it does."""
+"""Runs a command, prints its output, and fails if the command fails."""

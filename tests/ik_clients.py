@@ -1,4 +1,4 @@
-"""What the grade cells ask of a client of /solve_ik."""
+"""The grade cells' checks of a client of /solve_ik."""
 
 from my_robot_basics.checks import ik, serve
 from nodes.running import imported

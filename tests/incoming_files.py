@@ -1,4 +1,4 @@
-"""What comes in at paths, and whose it is found to be."""
+"""Files that come in at paths, and the owners that are found for them."""
 
 from datetime import UTC, datetime
 
@@ -13,9 +13,9 @@ BLACKBOARD = 'Lab 2_{}_attempt_2026-01-{}-03-04-05_02_joint_state.ipynb'
 
 
 def arriving(folder):
-    """Return what makes a file come in at a path, through a folder of ours.
+    """Return a function that makes a collected file for a path.
 
-    A folder of the path that ends in .zip is a student's archive.
+    A folder in the path that ends in .zip is a student's archive.
     """
 
     def incoming(path, content='', *, modified=LATER, problem=''):

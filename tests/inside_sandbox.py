@@ -1,4 +1,4 @@
-"""Python in a room of a sandbox, as a process that is started there."""
+"""Python processes that are started in a room of a sandbox."""
 
 import os
 import subprocess
@@ -8,12 +8,12 @@ from contextlib import contextmanager
 from grader.sandbox.sandbox import Sandbox
 
 SLOTS = iter(range(200, 300))
-"""None that a claimed ROS domain gives."""
+"""Slots that differ from all claimed ROS domains."""
 
 
 @contextmanager
 def opened(loop):
-    """Yield a sandbox, which is closed after that."""
+    """Yield a sandbox, and close it at the end."""
     sandbox = Sandbox(slot=next(SLOTS))
     loop.run(sandbox.open())
     yield sandbox
@@ -21,7 +21,7 @@ def opened(loop):
 
 
 def begin(sandbox, code, *, room='student'):
-    """Start Python in a room, told what a kernel there is told."""
+    """Start Python in a room, with the environment of a kernel there."""
     paths = sandbox.paths(room)
     return subprocess.Popen(
         [*paths.prefix, sys.executable, '-c', code],

@@ -1,4 +1,4 @@
-"""JupyterLab of `./course lab`, and a lesson in it: what tests with a browser share."""
+"""JupyterLab of `./course lab`, and a lesson in it, for tests with a browser."""
 
 import json
 import re
@@ -29,7 +29,7 @@ WIDTH = 'async image => (await image.decode(), image.naturalWidth)'
 
 
 class Lab:
-    """A JupyterLab of `./course lab`, for copies of the released lessons."""
+    """A JupyterLab of `./course lab`, with copies of the released lessons."""
 
     def __init__(self, folder, *arguments):
         self.folder = folder / 'notebooks'
@@ -37,7 +37,7 @@ class Lab:
         with socket.socket() as free:
             free.bind(('127.0.0.1', 0))
             self.address = f'http://127.0.0.1:{free.getsockname()[1]}'
-        # neither what this user's own JupyterLab remembers, nor what a test session sets
+        # without settings of this user's own JupyterLab, or of the test session
         names = ['CONFIG', 'DATA', 'RUNTIME']
         mine = {f'JUPYTER_{name}_DIR': str(folder / name) for name in names}
         options = ['--no-browser', '--expose-app-in-browser', '--ServerApp.port_retries=0']
@@ -66,7 +66,7 @@ class Lab:
                 time.sleep(0.2)
 
     def fresh_copy(self, name, language=''):
-        """A released lesson that nobody has opened yet, and so without a kernel: its path here."""
+        """Copy a released lesson that was never opened, so it has no kernel; return its path."""
         folder = Path(tempfile.mkdtemp(dir=self.folder))
         shutil.copy(ROOT / 'notebooks' / language / name / f'{name}.ipynb', folder)
         return f'{folder.name}/{name}.ipynb'
@@ -81,7 +81,7 @@ class Lab:
 
 
 def wait_until_open(page, path):
-    """Wait until a notebook is the one in front, and its kernel is up."""
+    """Wait until a notebook is in front and its kernel is idle."""
     page.wait_for_function(f"""
         jupyterapp.shell.currentWidget?.context?.path === '{path}'
         && jupyterapp.shell.currentWidget.context.isReady
@@ -94,13 +94,13 @@ class Lesson:
 
     def __init__(self, page, path):
         self.page = page
-        page.evaluate(  # as at a double click
+        page.evaluate(  # does what a double click does
             "async path => { await jupyterapp.commands.execute('docmanager:open', {path}) }", path
         )
         wait_until_open(page, path)
 
     def command(self, name, index=None):
-        """Run a command of JupyterLab's menus, with a cell selected, and wait for its end."""
+        """Run a command of JupyterLab's menus, with a cell selected; wait until it has ended."""
         self.page.evaluate(
             """async ([name, index]) => {
                 if (index !== null)
@@ -119,7 +119,7 @@ class Lesson:
         return [cell.id for cell in self.cells].index(cell_id)
 
     def shown(self, cell_id):
-        """The cell, scrolled to."""
+        """Scroll to a cell, and return it."""
         index = self.index(cell_id)
         self.page.evaluate('i => jupyterapp.shell.currentWidget.content.scrollToItem(i)', index)
         cell = self.page.locator(f'.jp-Notebook .jp-Cell[data-windowed-list-index="{index}"]')
@@ -127,13 +127,13 @@ class Lesson:
         return cell
 
     def type(self, cell_id, text):
-        """Replace a cell's text, as with the keyboard."""
+        """Replace a cell's text by keyboard input."""
         self.shown(cell_id).locator('.cm-content').click()
         self.page.keyboard.press('Control+A')
         self.page.keyboard.insert_text(text)
 
     def validate(self, title='Validation Results', close='Close'):
-        """Press the button; return what its dialog says in the end."""
+        """Press the button Validate; return the text of the final dialog."""
         self.page.get_by_role('button', name='Validate').click()
         dialog = self.page.locator('.jp-Dialog', has=self.page.locator('.mrb-validate-report'))
         dialog.locator('.mrb-validate-summary').wait_for()
@@ -145,7 +145,7 @@ class Lesson:
 
 
 def close_all(page):
-    """End every kernel, and close what is open."""
+    """Shut down all kernels, and close all open documents."""
     page.evaluate("""async () => {
         await jupyterapp.serviceManager.sessions.shutdownAll();
         [...jupyterapp.shell.widgets('main')].forEach(widget => widget.dispose());
@@ -162,7 +162,7 @@ def errors(cells):
 
 
 def pictures(cell):
-    """The stored outputs that show a picture."""
+    """Return the stored outputs that have a picture."""
     return [o for o in cell.get('outputs', []) if 'image/png' in o.get('data', {})]
 
 
@@ -171,12 +171,12 @@ def warnings(cells):
 
 
 def run_through(lesson):
-    """Run all cells of an unanswered lesson: it stops at no check, and every picture is shown."""
+    """Run all cells of an unanswered lesson: checks don't stop it, and every picture is shown."""
     released = lesson.cells
-    # a check, and what runs an answer: lesson 11 has commands, and none is there yet
+    # cells that may fail: checks, and cells that run an answer, such as the commands of lesson 11
     stops = [c.id for c in released if 'raises-exception' in c.metadata.get('tags', ())]
     lesson.command('notebook:run-all-cells')
-    # the command waits for the first error only; a whole lesson takes longer than an action
+    # the command waits only for the first error; a whole lesson takes longer than an action
     lesson.page.wait_for_function(ALL_RAN, timeout=3 * LONG)
     cells = lesson.cells
     failed = errors(cells)
@@ -192,11 +192,11 @@ def run_through(lesson):
 
 
 def see_the_arm_move(lesson):
-    """Run the cells of lesson 3 that show it, and see the picture change."""
+    """Run the cells of lesson 3 that show the arm, and check that the picture changes."""
     lesson.command('notebook:run-cell', lesson.index('imports'))
     lesson.command('notebook:run-cell', lesson.index('live'))
     assert errors(lesson.cells) == {}
     image = lesson.shown('live').locator('.jp-OutputArea img')
-    for _ in range(2):  # the first change may be that of the stored picture
+    for _ in range(2):  # the first change may only replace the stored picture
         before = image.get_attribute('src')
         expect(image).not_to_have_attribute('src', before)

@@ -13,8 +13,8 @@ _start = nbval.kernel.start_new_kernel
 
 
 def prepare(sockets: Path) -> None:
-    """Give each kernel that nbval starts sockets in a folder, and a last word."""
-    # of the TCP ports that are chosen for a kernel, another program may take one before it does
+    """Give nbval's kernels Unix sockets in a folder, and a message if one does not start."""
+    # a TCP port that was chosen for a kernel may be taken by another program before it starts
     nbval.kernel.KernelManager = lambda **options: KernelManager(
         transport='ipc', ip=str(sockets / uuid4().hex), **options
     )
@@ -23,8 +23,8 @@ def prepare(sockets: Path) -> None:
 
 @functools.wraps(_start)
 def start_kernel(*arguments: object, stderr: IO[str], **options: object) -> tuple:
-    """Start a kernel as nbval does. Raises RuntimeError with what it said if it does not start."""
-    stderr.close()  # of /dev/null
+    """Start a kernel as nbval does. Raises RuntimeError with its stderr if it does not start."""
+    stderr.close()  # nbval has opened /dev/null for it
     with tempfile.TemporaryFile('w+', errors='replace') as said:
         try:
             return _start(*arguments, stderr=said, **options)

@@ -1,4 +1,4 @@
-"""A lesson in a real kernel, cell by cell: what the tests of `live` in kernels share."""
+"""A lesson in a real kernel, run cell by cell, for tests of `live` in kernels."""
 
 import contextlib
 import os
@@ -50,10 +50,10 @@ def frozen(node):
 
 
 class Lesson:
-    """A kernel, and the outputs of each cell that it has run."""
+    """A kernel, and the outputs of each cell that was run in it."""
 
     def __init__(self, *setup):
-        # ipykernel's debugger may else write a warning of its own to stderr as it starts
+        # otherwise ipykernel's debugger may write a warning to stderr when it starts
         env = os.environ | {'PYDEVD_DISABLE_FILE_VALIDATION': '1'}
         self.manager, self.client = start_new_kernel(
             kernel_name='python3', stderr=subprocess.PIPE, env=env
@@ -73,7 +73,7 @@ class Lesson:
         return cell
 
     def wait_for(self, condition, timeout_sec=30):
-        """Take messages until the condition holds; return whether it does."""
+        """Receive messages until the condition is true; return whether it is."""
         deadline = time.monotonic() + timeout_sec
         while not condition() and time.monotonic() < deadline:
             with contextlib.suppress(queue.Empty):
@@ -83,7 +83,7 @@ class Lesson:
         return condition()
 
     def value(self, expression):
-        """What `repr` says of an expression."""
+        """Return the repr of an expression's value."""
         cell = self.run(f'print(repr(({expression})))')
         assert cell.error is None
         return cell.stdout.strip()
@@ -105,7 +105,7 @@ class Lesson:
 
 
 class Cell:
-    """The outputs of one cell, also those that come after its end."""
+    """The outputs of one cell, also those that arrive after its end."""
 
     def __init__(self, lesson, message_id):
         self.id = message_id
@@ -138,12 +138,12 @@ class Cell:
 
     @property
     def displays(self):
-        """The states of what the cell shows, oldest first."""
+        """The states of the cell's display, oldest first."""
         return self._contents('display_data', 'update_display_data')
 
     @property
     def panel(self):
-        """What the panel says now."""
+        """The current text of the panel."""
         return self.displays[-1]['data']['text/plain'] if self.displays else ''
 
 
@@ -153,7 +153,7 @@ SILENT = """class Silent(Node):
 
 
 def opened_lesson():
-    """Yield a lesson with TALKER; see at its end that its kernel wrote and left nothing."""
+    """Yield a lesson with TALKER; check at the end that its kernel wrote nothing to stderr."""
     lesson = Lesson(TALKER)
     yield lesson
     for cell_id in lesson.messages:
@@ -169,7 +169,7 @@ def stop_nodes_after(request):
     if 'lesson' in request.fixturenames:
         lesson = request.getfixturevalue('lesson')
         stop = lesson.run('stop()')
-        if not stop.done:  # a cell did not end: its test has failed, and no other is to
+        if not stop.done:  # a cell hangs: its test has failed, but the next ones must not
             lesson.restart()
             stop = lesson.run(TALKER)
         assert stop.error is None

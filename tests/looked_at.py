@@ -1,4 +1,4 @@
-"""A course whose answers are looked at, and not run, with what its gradebook holds of them."""
+"""A course whose answers are compared as text instead of being run."""
 
 from course_maker import TOY, executed, released_course
 from nbgrader.api import Gradebook
@@ -13,7 +13,7 @@ WRONG = 'def double(x):\n    return x + 1'
 
 
 def looked_at_course(folder, monkeypatch, looked):
-    """Return a released course; `looked` gets the answers that would be run, in their order."""
+    """Return a released course; each answer that would be run is appended to `looked`."""
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')

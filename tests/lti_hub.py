@@ -1,6 +1,6 @@
-"""The hub of deploy/jupyterhub/, into which a learning platform sends people; it starts no server.
+"""The hub of deploy/jupyterhub/ with LTI, to which a learning platform sends users.
 
-Its users are such as any Linux has, so that nobody has to be root for it.
+It starts no servers. Its users exist on every Linux, so root is not needed.
 """
 
 import os
@@ -19,8 +19,8 @@ STUDENT, INSTRUCTOR, OUTSIDER = 'daemon', 'bin', 'sys'
 
 @contextmanager
 def lti_hub(platform):
-    """Install and run a hub that trusts the platform, which learns where it lies."""
-    with tempfile.TemporaryDirectory(dir='/tmp', prefix='hub-') as name:  # sockets: short names
+    """Install and run a hub that trusts the platform, and tell the platform its address."""
+    with tempfile.TemporaryDirectory(dir='/tmp', prefix='hub-') as name:  # short: has sockets
         machine = HubMachine(Path(name), INSTRUCTOR, (STUDENT,))
         write_settings(machine, STUDENT)
         settings = tomlkit.parse((machine.folder / 'class.toml').read_text())
@@ -33,7 +33,7 @@ def lti_hub(platform):
 
 
 def install(folder):
-    """What deploy/jupyterhub/install does for the hub alone, without root."""
+    """Do what deploy/jupyterhub/install does for the hub only, without root."""
     for file in (*DEPLOY.glob('*.py'), *DEPLOY.glob('*.cjs'), *DEPLOY.glob('package*.json')):
         shutil.copy(file, folder)
     (folder / 'state').mkdir()
@@ -45,7 +45,7 @@ def install(folder):
 
 
 def run(command, folder):
-    """Run one step of it, with the Node.js that the hub brings."""
+    """Run one step of the installation, with the hub's own Node.js."""
     environment = outside() | {'HOME': os.environ['HOME'], 'PATH': f'{folder}/venv/bin:{PATH}'}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

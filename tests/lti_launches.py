@@ -1,4 +1,4 @@
-"""The small platform sends people to a tool by LTI 1.3, with its own keys; or pretends to."""
+"""The small platform launches a tool by LTI 1.3, with its own keys or with wrong ones."""
 
 import html
 import json
@@ -22,7 +22,7 @@ FIELD = re.compile(r'(?:name|action)="(\w+|http[^"]+)"(?: value="([^"]*)")?')
 
 
 class LaunchingPlatform(LtiPlatform):
-    """A platform whose people follow the link to one tool, `tool`."""
+    """A platform whose users follow the link to one tool, `tool`."""
 
     def __init__(self):
         super().__init__(public=None)
@@ -30,13 +30,13 @@ class LaunchingPlatform(LtiPlatform):
         self.kid = uuid4().hex
         self.algorithm = 'RS256'
         self.tool = ''
-        """Where the tool lies, as it was registered."""
+        """The URL of the tool, as it was registered."""
         self.people = {}
-        """What a login_hint means: the claims about a person."""
+        """By login_hint: the claims about a person."""
         self.changed = {}
-        """Claims of the next id_tokens that are others than they should be; None: left out."""
+        """Wrong claims for the next id_tokens; None leaves a claim out."""
         self.asked = []
-        """The authentication requests that were right."""
+        """The authentication requests that were valid."""
 
     def page(self, path, query):
         if path == '/jwks':
@@ -63,13 +63,13 @@ class LaunchingPlatform(LtiPlatform):
         return 200, 'text/html', FORM.format(**escaped)
 
     def jwk(self):
-        """Return the key with which a tool checks what the platform signs."""
+        """Return the public key with which a tool verifies the platform's signatures."""
         key = jwt.get_algorithm_by_name('RS256').prepare_key(self.public)
         jwk = jwt.algorithms.RSAAlgorithm.to_jwk(key, as_dict=True)
         return jwk | {'kid': self.kid, 'alg': 'RS256', 'use': 'sig'}
 
     def id_token(self, asked):
-        """Return what the platform signs of the person who follows the link."""
+        """Return the signed claims about the person who follows the link."""
         now = int(time.time())
         claims = {
             'iss': self.address,
@@ -102,7 +102,7 @@ class LaunchingPlatform(LtiPlatform):
 
 
 def person(username, *roles, user_id='4711', **others):
-    """Return what a platform says of a person, with the name they log in there by."""
+    """Return the platform's claims about a person with this user name."""
     return {
         'sub': user_id,
         f'{CLAIM}roles': [ROLE + role for role in roles or ['Learner']],
@@ -112,14 +112,14 @@ def person(username, *roles, user_id='4711', **others):
 
 
 class Browser:
-    """Goes where it is sent, with the cookies it got; one step at a time."""
+    """Follows an LTI launch with cookies, one step at a time."""
 
     def __init__(self, platform):
         self.platform = platform
         self.session = requests.Session()
 
     def follow_link(self, who, method='POST', **others):
-        """Begin at the platform's link; return the form that it lets the browser send."""
+        """Follow the link on the platform; return the form that the browser then has to send."""
         asked = {
             'iss': self.platform.address,
             'client_id': CLIENT,
@@ -143,7 +143,7 @@ class Browser:
         }
 
     def send(self, form):
-        """Send the form to the tool; return its answer, which may send us on."""
+        """Send the form to the tool; return its response, which may be a redirect."""
         there = f'{self.platform.tool}/hub/lti13/oauth_callback'
         return self.session.post(there, data=form, allow_redirects=False)
 
@@ -152,7 +152,7 @@ class Browser:
         return self.send(self.follow_link(who, **others))
 
     def user(self):
-        """Return whom the hub takes this browser for, or ''."""
+        """Return the user whom the hub has logged in in this browser, or ''."""
         page = self.session.get(f'{self.platform.tool}/hub/home')
         if urlsplit(page.url).path != '/hub/home':
             assert parse_qs(urlsplit(page.url).query)['next'] == ['/hub/home'], page.url

@@ -1,4 +1,4 @@
-"""A small learning platform with LTI 1.3's Assignment and Grade Services, and its own bad days."""
+"""A small learning platform with LTI 1.3's Assignment and Grade Services, and faults on demand."""
 
 import json
 import threading
@@ -17,7 +17,7 @@ CLIENT = 'course-of-the-arm'
 ASSERTION = 'urn:ietf:params:oauth:client-assertion-type:jwt-bearer'
 SCOPE = 'https://purl.imsglobal.org/spec/lti-ags/scope'
 PER_PAGE = 1
-"""So few columns on a page that a client has to turn it."""
+"""Columns per page: so few that a client has to follow the link to the next page."""
 
 
 def new_key():
@@ -32,16 +32,16 @@ def new_key():
 
 
 class LtiPlatform:
-    """What the platform knows, and how it feels today."""
+    """The data of the platform, and its current fault."""
 
     def __init__(self, public):
         self.public = public
         self.users = {'4711', '4712', '4713'}
         self.columns = {}
         self.scores = {}
-        """(column, user) -> the last score."""
+        """The last score, by column and user."""
         self.received = []
-        """Every score that was taken, in order."""
+        """Every score that was accepted, in order."""
         self.requests = []
         self.tokens = {}
         self.seen_jti = set()
@@ -51,10 +51,10 @@ class LtiPlatform:
         self.address = ''
 
     def page(self, path, query):
-        """Return (status, type, text) of a page that a browser asks for, or None."""
+        """Return (status, type, text) of a page for a browser, or None."""
 
     def token_for(self, form):
-        """Return (status, answer) for a client that says who it is."""
+        """Return (status, response) to a client's token request."""
         if form.get('grant_type') != 'client_credentials':
             return 400, {'error': 'unsupported_grant_type'}
         if form.get('client_assertion_type') != ASSERTION:
@@ -83,12 +83,12 @@ class LtiPlatform:
         }
 
     def may(self, token, scope):
-        """Whether a token is ours, valid, and for that."""
+        """Whether a token was issued here, is valid, and has this scope."""
         scopes, until = self.tokens.get(token, (set(), 0))
         return f'{SCOPE}/{scope}' in scopes and time.monotonic() < until
 
     def take(self, column, body):
-        """Return (status, answer) for a score."""
+        """Return (status, response) to a score."""
         if column not in self.columns:
             return 404, {'error': 'no such line item'}
         if body['userId'] not in self.users:
@@ -168,7 +168,7 @@ class Handler(BaseHTTPRequestHandler):
 
 @contextmanager
 def served(platform, port=0):
-    """Serve the platform while the block runs; afterwards nobody answers at its address."""
+    """Serve the platform during the block; afterwards its port is closed."""
     server = ThreadingHTTPServer(('127.0.0.1', port), Handler)
     server.platform = platform
     platform.address = f'http://127.0.0.1:{server.server_port}'

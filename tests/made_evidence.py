@@ -1,4 +1,4 @@
-"""Evidence that is made up: what a doctor would have seen of a topic, and of a service."""
+"""Evidence made for tests: what the doctor would have seen of a topic and of a service."""
 
 import dataclasses
 import time
@@ -14,7 +14,7 @@ TOPIC = '/kinematics/joint_states'
 
 
 def infinite(profile):
-    """As the graph tells it: a duration that was left out has no end."""
+    """Make unset durations infinite, as the graph reports them."""
     for name in 'deadline', 'liveliness_lease_duration':
         if getattr(profile, name).nanoseconds == 0:
             setattr(profile, name, Duration(nanoseconds=2**63 - 1))

@@ -1,4 +1,4 @@
-"""Recordings that are made up: messages at whatever times, as a check would have them."""
+"""Recordings made for tests: messages at chosen times, as a check would have recorded them."""
 
 import math
 
@@ -33,14 +33,14 @@ def every(period_sec, count=50):
 
 
 def ticked(period_sec, seconds, step_sec, *, late=()):
-    """When messages of a timer are seen on a clock that moves in steps; some a step late."""
+    """Return when a timer's messages are seen on a clock that moves in steps; some a step late."""
     count = int(seconds / period_sec)
     ticks = [math.ceil(period_sec * i / step_sec - 1e-9) + (i in late) for i in range(1, count)]
     return [step_sec * tick for tick in ticks]
 
 
 def on_wall(gaps_sec, *, late_sec):
-    """A recording on the wall clock of messages so far apart, whatever they say."""
+    """Return a recording on the wall clock with these gaps between messages, of any content."""
     times = [sum(gaps_sec[:n]) for n in range(1, len(gaps_sec) + 1)]
     samples = tuple(Sample(None, at, at) for at in times)
     return Recording(

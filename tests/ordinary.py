@@ -1,10 +1,9 @@
-"""What `./course test` takes of tests that are many and alike; `./course test --slow` takes all.
+"""Which cases of tests with many similar cases `./course test` runs; `--slow` runs all.
 
-Of a test that starts something (tests/tiers.py) and has several cases, an ordinary run takes the
-first. A row of the table names others: a regular expression for what stands in the brackets of
-those that it takes. One right and one wrong case of each check, and one attack on each kind of
-limit, stay in it. A test that takes long, and has a quicker one beside it for the same behaviour,
-has the mark `slow` where it stands.
+If a test that starts something (tests/tiers.py) has several cases, an ordinary run takes only the
+first. A row of the table chooses others: a regular expression for the test ids in brackets. One
+right and one wrong case of each check, and one attack on each kind of limit, stay in it. A slow
+test with a faster one for the same behaviour has the mark `slow` in its own file.
 """
 
 import re
@@ -13,16 +12,16 @@ from collections import defaultdict
 import pytest
 
 ATTACKS = (
-    # what the sandbox forbids, bounds or hides
+    # what the sandbox forbids, limits or hides
     r'fork_bomb|makes_rare_system_calls|network_out|reads_the_seed'
-    # what the grader believes
+    # what the grader accepts
     r'|forges_a_verdict|html_and_escapes|patches_what_checks_use|edits_its_checks'
 )
 ALL = r'.*'
 FEW = 1
-"""How many cases of a test without a row."""
+"""How many cases are run of a test without a row."""
 ORDINARY = {
-    # they are quick, and each is another limit, or another end
+    # they are quick, and each tests another limit or another kind of end
     'test_sandbox_share::test_a_room_can_use_up_only_its_share': ALL,
     'test_sandbox::test_the_course_and_the_machines_own_are_not_there': ALL,
     'test_kernels::test_a_cell_comes_to_its_end': ALL,
@@ -31,7 +30,7 @@ ORDINARY = {
     'test_checks_delivery_experiment::test_name_and_type_decide': ALL,
     'test_sample_class::test_a_sample_earns_what_it_should_for_the_reason_that_it_should': ALL,
     'test_readme::test_links_and_pictures_lead_somewhere': ALL,
-    # each lesson runs in nbval and in Validate, too
+    # each lesson is also run by nbval and by Validate
     'test_lessons_run::test_an_unanswered_lesson_fails_in_its_checks_alone_and_says_what_is_missing': (  # noqa: E501
         r'03_publisher'
     ),
@@ -106,7 +105,7 @@ ORDINARY = {
     'test_ros2_streams::test_what_cannot_be_done_is_said_in_a_sentence': r'(echo|hz|bw) .*',
     # one lesson, one page
     'test_accessibility::test_a_released_lesson': r'03_publisher/.*|index\.ipynb',
-    # the same fault, or the same end, of another kind
+    # the same fault, or the same kind of end, in another form
     'test_doctor_faults::test_a_wrong_line_is_named_first_and_fixed': r'best effort',
     'test_doctor_healthy::test_half_a_dozen_healthy_systems': r'1',
     'test_environment::test_a_resolver_adds_nothing_to_the_pins_and_finds_a_wheel_of_each': (
@@ -153,7 +152,7 @@ ORDINARY = {
     'test_checks_clock::test_a_node_is_alive_after_a_check_that_was_cut_short': (
         r'KeyboardInterrupt'
     ),
-    # this environment was set up, too: with pip, or with uv
+    # the other installer, pip or uv, is tested where this environment was set up
     'test_course_setup::test_really_sets_up': r'uv',
     'test_ros2_streams::test_a_signal_at_any_moment_leaves_no_ghost': r'2',
     'test_dask_backend::test_a_worker_that_is_not_as_we_are_grades_nothing': r'environment0-.*',
@@ -188,9 +187,9 @@ ORDINARY = {
 
 
 def mark_slow(items: list[pytest.Item]) -> None:
-    """Mark as slow the cases of a test that an ordinary run leaves to `--slow`.
+    """Mark as slow the cases of tests that only `--slow` runs.
 
-    Raises pytest.UsageError where the table leaves nothing of a test to an ordinary run.
+    Raises pytest.UsageError if the table leaves no case of a test for an ordinary run.
     """
     cases = defaultdict(list)
     for item in items:

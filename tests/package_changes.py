@@ -1,4 +1,4 @@
-"""Our own package of lesson 12, and what students do otherwise in theirs."""
+"""Our own package of lesson 12, and changes that students may make in theirs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ Files = dict[str, str]
 
 
 def ours() -> Files:
-    """The files of our own package, by their paths in its folder."""
+    """Return the files of our own package, by path."""
     paths = (path for path in SOURCE.rglob('*') if path.is_file())
     texts = {str(p.relative_to(SOURCE)): p for p in paths if '__pycache__' not in p.parts}
     return {name: path.read_text(encoding='utf-8') for name, path in sorted(texts.items())}
@@ -29,23 +29,23 @@ def write(files: Files, folder: Path) -> None:
 
 @dataclass(frozen=True)
 class Change:
-    """What one student has done otherwise."""
+    """One student's change of the package."""
 
     name: str
     make: Callable[[Files], None]
     points: tuple[float, ...] = FULL
     says: dict[str, str] = field(default_factory=dict)
-    """What the reason for a check's lost points has to hold."""
+    """What the reason for a check's lost points has to contain."""
 
     def files(self) -> Files:
-        """The files of the package."""
+        """Return the files of the changed package."""
         files = ours()
         self.make(files)
         return files
 
 
 def swap(file: str, *pairs: tuple[str, str]) -> Callable[[Files], None]:
-    """Replace texts in a file; each has to be there."""
+    """Return a change that replaces texts in a file; each text must be there."""
 
     def make(files: Files) -> None:
         for old, new in pairs:
@@ -57,7 +57,7 @@ def swap(file: str, *pairs: tuple[str, str]) -> Callable[[Files], None]:
 
 
 def without(*names: str) -> Callable[[Files], None]:
-    """Leave files out."""
+    """Return a change that leaves files out."""
 
     def make(files: Files) -> None:
         for name in names:

@@ -41,7 +41,7 @@ def main(args=None):
 """
 _BLOCK = re.compile(r'\*\*`(\w+)`\*\*[^\n]*\n\n```python\n(.*?)```', re.DOTALL)
 CELLS = dict(_BLOCK.findall((ROOT / 'docs/grading-a-package.md').read_text(encoding='utf-8')))
-"""The cells of the page for instructors, by their ids."""
+"""The cells of the instructors' page, by id."""
 
 
 def cell(grade_id: str, source: str, **marks: object) -> NotebookNode:
@@ -51,7 +51,7 @@ def cell(grade_id: str, source: str, **marks: object) -> NotebookNode:
 
 
 def package_lesson(*, builds: str = CELLS['builds'], runs: str = CELLS['runs']) -> NotebookNode:
-    """The source of the lesson: its title, and an exercise without a cell of the student's."""
+    """Return the source of the lesson: its title, and an exercise without a student's cell."""
     return new_notebook(
         cells=[
             new_markdown_cell('# A package', id='title'),
@@ -66,7 +66,7 @@ def package_lesson(*, builds: str = CELLS['builds'], runs: str = CELLS['runs']) 
 
 
 def write_lesson(root: Path) -> Path:
-    """Write the lesson as a source of a course; return its path."""
+    """Write the lesson into a course's solutions/; return its path."""
     path = root / 'solutions' / LESSON / f'{LESSON}.ipynb'
     path.parent.mkdir(parents=True)
     nbformat.write(package_lesson(), path)
@@ -74,7 +74,7 @@ def write_lesson(root: Path) -> Path:
 
 
 def make_package(above: Path, *, node: str = NODE, **files: str | None) -> Path:
-    """Make a right package in a folder, but for files by path, with __ for /; None removes one."""
+    """Make a right package, with other files by path (__ for /); None removes a file."""
     above.mkdir(parents=True, exist_ok=True)
     skeleton.make(above, PACKAGE, node_name='greet', dependencies=('rclpy', 'std_msgs'))
     folder = above / PACKAGE

@@ -1,6 +1,6 @@
-"""A server of PostgreSQL in a temporary folder, run by an unprivileged user, for tests.
+"""A PostgreSQL server in a temporary folder, run by an unprivileged user, for tests.
 
-Its programs are those of Debian's package postgresql.
+Its programs come from Debian's package postgresql.
 """
 
 import itertools
@@ -28,7 +28,7 @@ USER = 'grader'
 
 
 def programs() -> Path:
-    """Return the folder of the newest server's programs; skip the test where there is none."""
+    """Return the folder of the newest server's programs; skip the test if there is none."""
     on_path = shutil.which('initdb')
     found = [Path(on_path).parent] if on_path else []
     found += sorted(Path('/usr/lib/postgresql').glob('*/bin'), key=lambda p: int(p.parent.name))
@@ -38,15 +38,15 @@ def programs() -> Path:
 
 
 class Server:
-    """A server that can be stopped, killed and started again; it has a user who owns databases."""
+    """A server that can be stopped, killed and started again, with a user who owns databases."""
 
     def __init__(self) -> None:
-        """Make a cluster in a folder of its own, and start it."""
+        """Make a database cluster in a new folder, and start it."""
         self.programs = programs()
         self.numbers = itertools.count()
         self.folder = Path(tempfile.mkdtemp(prefix='postgresql-', dir='/tmp'))
         self.who = {}
-        if os.geteuid() == 0:  # the server refuses to run as root
+        if os.geteuid() == 0:  # PostgreSQL refuses to run as root
             nobody = pwd.getpwnam('nobody')
             self.who = {'user': nobody.pw_uid, 'group': nobody.pw_gid, 'extra_groups': []}
             os.chown(self.folder, nobody.pw_uid, nobody.pw_gid)
@@ -74,7 +74,7 @@ class Server:
             [self.programs / program, *arguments],
             cwd=self.folder,
             stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,  # the server would keep a pipe open
+            stdout=subprocess.DEVNULL,  # the server would inherit a pipe and keep it open
             stderr=subprocess.DEVNULL,
             env={'PATH': os.environ['PATH'], 'LC_ALL': 'C.UTF-8'},
             check=False,
@@ -112,11 +112,11 @@ class Server:
         )
 
     def fresh(self) -> str:
-        """Make an empty database that has no other test's name; return its address."""
+        """Make an empty database with a new name; return its URL."""
         return self.make(f'course_{next(self.numbers)}')
 
     def make(self, database: str, owner: str = USER, encoding: str = 'UTF8') -> str:
-        """Make a database; return its address, with the password."""
+        """Make a database; return its URL, with the password."""
         with self.administrator() as connection:
             connection.execute(
                 sql.SQL(
@@ -131,7 +131,7 @@ class Server:
 
 @contextmanager
 def running() -> Iterator[Server]:
-    """Give a server, which is gone at the end."""
+    """Yield a server, which is removed at the end."""
     server = Server()
     try:
         yield server
@@ -140,7 +140,7 @@ def running() -> Iterator[Server]:
 
 
 def released_in(server: Server, root: Path) -> Course:
-    """Return a course with one released lesson, whose gradebook is in PostgreSQL and empty."""
+    """Return a course with one released lesson, whose empty gradebook is in PostgreSQL."""
     course = released_course(root)
     course.database.unlink()
     use(course.gradebook, server.fresh())
@@ -148,13 +148,13 @@ def released_in(server: Server, root: Path) -> Course:
 
 
 def students_in(course: Course) -> list[str]:
-    """Return the students that the database knows, sorted."""
+    """Return the students in the database, sorted."""
     with transaction(course.db_url) as book:
         return sorted(student.id for student in book.students)
 
 
 def nbgrader(course: Course, *arguments: str) -> subprocess.CompletedProcess:
-    """Run a command of nbgrader's own in the course's folder."""
+    """Run a command of nbgrader itself in the course's folder."""
     return subprocess.run(
         [sys.executable, '-P', '-m', 'nbgrader', *arguments],
         cwd=course.root,
@@ -165,7 +165,7 @@ def nbgrader(course: Course, *arguments: str) -> subprocess.CompletedProcess:
 
 
 def use(gradebook: Path, url: str) -> None:
-    """Let a gradebook be in PostgreSQL, as an instructor does."""
+    """Configure a gradebook to be in PostgreSQL, as an instructor does."""
     gradebook.mkdir(parents=True, exist_ok=True)
     path = gradebook / 'database.toml'
     path.touch(mode=0o600)

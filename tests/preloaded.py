@@ -1,6 +1,6 @@
-"""nbgrader's command in processes that are forked from one which has imported it.
+"""Run nbgrader's command in processes forked from one that has imported it.
 
-To import it takes longer than to release a lesson, and the tests release many.
+Importing nbgrader takes longer than releasing a lesson, and tests release many lessons.
 """
 
 import multiprocessing
@@ -17,7 +17,7 @@ _forking.set_forkserver_preload(['nbgrader.apps', 'nbgrader.apps.nbgraderapp'])
 
 
 def run(command: list, *, cwd: Path, **options: object) -> subprocess.CompletedProcess:
-    """Run a command as subprocess.run does, where it is nbgrader's in a forked process."""
+    """Run a command as subprocess.run does; nbgrader's command runs in a forked process."""
     if command[:3] != NBGRADER:
         return subprocess.run(command, cwd=cwd, **options)
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""A node between two topics, and the checks of it: what the tests of `relay` share."""
+"""A relay node between two topics, and its checks, for tests of `relay`."""
 
 import itertools
 
@@ -32,7 +32,7 @@ def check_late_joiner():
 
 
 class Counts(monitor.JointStateMonitor):
-    """Gives each callback the number of the message, and the messages so far."""
+    """Each callback keeps its messages; `chosen` decides which of them are published."""
 
     def changed(self, publish):
         received = []

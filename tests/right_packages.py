@@ -67,7 +67,7 @@ RIGHT = (
         ),
     ),
     Change('blocks_one_of_four_threads', swap(DRIVER, *_FOUR_THREADS)),
-    # setup.py names the folder: Python imports it all the same, on a robot as well
+    # setup.py names the folder: Python imports it without __init__.py, on a robot, too
     Change('no_init_file', without('arm_player/__init__.py')),
     Change('words_as_a_list', swap(PLAYER, ("' '.join(words)", 'str(words)'))),
     Change(
@@ -102,7 +102,7 @@ RIGHT += (
 
 
 def _in_turn(files: Files) -> None:
-    """Each target is visited from the callback of the one before: nothing ever waits."""
+    """Each target is visited from the callback of the previous one: nothing waits."""
     head, rest = files[PLAYER].split('    def play(self):')
     files[PLAYER] = f'{head}{_CHAIN}\n\ndef main():{rest.split("def main():")[1]}'
 
@@ -181,7 +181,7 @@ RIGHT += (
 
 
 def _module_of_its_own(files: Files) -> None:
-    """What the ends are called stands in a file beside the player."""
+    """The names of the outcomes are in a separate module beside the player."""
     head, rest = files[PLAYER].split('ENDS = {')
     ends, rest = rest.split('}\n', maxsplit=1)
     head = head.replace('from action_msgs.msg import GoalStatus\n', '')

@@ -1,4 +1,4 @@
-"""For tests: the console script `ros2` as a process, and nodes for it to look at."""
+"""The console script `ros2` as a process, and nodes for it to find, for tests."""
 
 import contextlib
 import os
@@ -15,9 +15,9 @@ SCRIPT = Path(sys.executable).with_name('ros2')
 NODES = Path(__file__).parent / 'nodes'
 TIMEOUT_SEC = 30
 MOST_SEC = 120
-"""A line that never comes ends a test after so long: what was to print it is killed."""
+"""If an expected line does not come for so long, the process is killed, and the test fails."""
 OF_A_LESSON = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
-"""What nodes outside of the course lack."""
+"""Variables that nodes outside of the course do not have."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def ros2(*words: str, stdin: str = '', **environment: str) -> Result:
 
 @contextlib.contextmanager
 def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]:
-    """Run a command for the duration of a with statement, its output in pipes."""
+    """Run a command during a with block, with its output in pipes."""
     pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'encoding': 'utf-8'}
     process = subprocess.Popen([str(word) for word in words], **{**pipes, **options})
     watchdog = threading.Timer(MOST_SEC, process.kill)
@@ -51,7 +51,7 @@ def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]
         yield process
     finally:
         watchdog.cancel()
-        process.terminate()  # in good order: a killed process stays on the graph for a while
+        process.terminate()  # not killed, because a killed node stays on the graph for a while
         try:
             process.wait(5)
         except subprocess.TimeoutExpired:
@@ -61,7 +61,7 @@ def started(*words: str | Path, **options: object) -> Iterator[subprocess.Popen]
 
 @contextlib.contextmanager
 def on_the_graph(*names: str, topics: tuple[str, ...] = ()) -> Iterator[None]:
-    """Nodes of `tests/nodes/`, once their topics are on the graph."""
+    """Run nodes of `tests/nodes/`; yield when their topics are on the graph."""
     quiet = {'stdout': subprocess.DEVNULL, 'stderr': subprocess.DEVNULL}
     with contextlib.ExitStack() as stack:
         paths = [NODES / f'{name}.py' for name in names]
@@ -77,7 +77,7 @@ def on_the_graph(*names: str, topics: tuple[str, ...] = ()) -> Iterator[None]:
 
 @contextlib.contextmanager
 def plain_nodes(nodes: int, contexts: int) -> Iterator[subprocess.Popen]:
-    """Run `nodes/plain.py`, which knows nothing of the course."""
+    """Run `nodes/plain.py`, which does not use the course's packages."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_A_LESSON}
     with started(
         *(sys.executable, NODES / 'plain.py', str(nodes), str(contexts)), env=environment
@@ -88,7 +88,7 @@ def plain_nodes(nodes: int, contexts: int) -> Iterator[subprocess.Popen]:
 
 @contextlib.contextmanager
 def own_domain() -> Iterator[None]:
-    """A ROS domain in which no other test has left a node."""
+    """Use a ROS domain without nodes of other tests."""
     before = os.environ['ROS_DOMAIN_ID']
     claim = domain.claim()
     os.environ['ROS_DOMAIN_ID'] = str(claim.domain_id)

@@ -1,7 +1,7 @@
-"""Load arm_interfaces and send each of its types to and fro: a program of its own, on any Python.
+"""Load arm_interfaces and send each of its types back and forth; runs by itself on any Python.
 
-Imports nothing of the course, so that an environment without it can run this file, too. Prints
-what came back, type by type; ends with a traceback where something did not.
+It imports nothing of the course, so it also runs in an environment without it. It prints the types
+that came back; it ends with a traceback if one did not.
 """
 
 import importlib
@@ -28,7 +28,7 @@ OURS = {kind.__name__: kind for kind in MESSAGES}
 
 
 def filled(kind):
-    """A message in which no field is empty or 0."""
+    """Return a message in which no field is empty or 0."""
     fields = zip(kind.get_fields_and_field_types(), kind.SLOT_TYPES, strict=True)
     return kind(**{name: value_of(slot) for name, slot in fields})
 
@@ -54,7 +54,7 @@ def value_of(slot):
 
 
 class Arm(Node):
-    """Serves both, echoes what it is asked, and asks itself."""
+    """Offers both interfaces, echoes requests, and is its own client."""
 
     def __init__(self):
         super().__init__('arm')

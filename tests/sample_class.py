@@ -1,4 +1,4 @@
-"""The sample class as test modules use it: what is expected of each, and a course to grade it."""
+"""The sample class for test modules: what each sample is expected to earn; hand in and grade."""
 
 import json
 import shutil
@@ -25,26 +25,26 @@ __all__ = ['EXPECTED', 'FOLDER', 'PATHS', 'assignment_of', 'grade', 'hand_in', '
 _CHANGES = {change.name: change for change in ALL}
 
 PATHS = {path.stem: path for path in samples()}
-"""Every sample, by its name."""
+"""Every sample, by name."""
 EXPECTED = {
     sample: cells
     for path in sorted(FOLDER.glob('expected/*.json'))
     for sample, cells in json.loads(path.read_text(encoding='utf-8')).items()
 }
-"""For each sample, for each grade cell: its score and what its reason must say."""
+"""By sample and grade cell: its score, and what its reason must contain."""
 
 
 def package_of(name: str) -> Files:
-    """Return the files of the package that a sample hands in, by path; none where it has none.
+    """Return the files of the package that a sample hands in, by path; none if it has no package.
 
-    It is ours with the change of tests/changed_packages.py after which the sample is named.
+    It is our package with the change of tests/changed_packages.py that has the sample's name.
     """
     assignment, _, why = name.split('-', 2)
     return _CHANGES[why].files() if assignment == LESSON and why != 'untouched' else {}
 
 
 def hand_in(course: Course, names: Iterable[str]) -> None:
-    """Put samples where a course's submissions lie; each is its own student."""
+    """Put samples into a course's submitted/; each is a student of its own."""
     for name in names:
         assignment = assignment_of(PATHS[name])
         folder = course.folder('submitted', name, assignment)
@@ -56,7 +56,7 @@ def hand_in(course: Course, names: Iterable[str]) -> None:
 def grade(
     course: Course, names: Iterable[str], *, backend: Backend | None = None
 ) -> dict[str, SubmissionOutcome]:
-    """Grade samples as `./course grade` does; return the rows by the samples' names."""
+    """Grade samples as `./course grade` does; return the outcomes by sample."""
     hand_in(course, names)
     return {
         row.student_id: row for row in grade_all(course, find_submissions(course), backend=backend)

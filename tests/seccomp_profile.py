@@ -1,4 +1,4 @@
-"""Run a command under a seccomp profile of the form that Docker reads: FILE COMMAND [ARGUMENT]."""
+"""Run a command under a seccomp profile in Docker's format: FILE COMMAND [ARGUMENT]."""
 
 import ctypes
 import json
@@ -19,7 +19,7 @@ class Argument(ctypes.Structure):
 
 
 def load(profile):
-    """Put this process under the profile."""
+    """Apply the profile to this process."""
     library = ctypes.CDLL('libseccomp.so.2', use_errno=True)
     library.seccomp_init.restype = ctypes.c_void_p
     context = ctypes.c_void_p(library.seccomp_init(ERRNO | profile['defaultErrnoRet']))
@@ -31,7 +31,7 @@ def load(profile):
         ]
         for name in rule['names']:
             number = library.seccomp_syscall_resolve_name(name.encode())
-            if number < 0:  # of another architecture, or newer than this libseccomp
+            if number < 0:  # it is of another architecture, or newer than this libseccomp
                 continue
             array = (Argument * max(len(arguments), 1))(*arguments)
             added = library.seccomp_rule_add_array(

@@ -1,4 +1,4 @@
-"""A `serve` without rooms, for tests: what an answer says stands in for running it."""
+"""`serve` without rooms, for tests: a look at the answer's text replaces running it."""
 
 import asyncio
 import sys
@@ -31,7 +31,7 @@ WRONG = 'def double(x):\n    return x + 1'
 
 
 def exchange_in(folder: Path) -> Path:
-    """Make the exchange of a course; return the folder of it into which students submit."""
+    """Make a course's exchange; return its inbound folder, to which students submit."""
     for name in ('inbound', 'outbound', 'feedback'):
         (folder / 'exchange' / name).mkdir(parents=True)
     return folder / 'exchange' / 'inbound'
@@ -60,7 +60,7 @@ def hand_in(
 
 
 def put_there(course: Course, inbound: Path, student: str) -> Path:
-    """Put a right submission into a folder of uploads as a person does; return its folder."""
+    """Put a right submission into a folder of uploads, as a person does; return its folder."""
     folder = inbound / student / TOY
     folder.mkdir(parents=True)
     (folder / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
@@ -68,24 +68,24 @@ def put_there(course: Course, inbound: Path, student: str) -> Path:
 
 
 def arrivals(course: Course) -> list[Arrival]:
-    """Return what has come in, and was not replaced."""
+    """Return the arrivals that were not replaced."""
     with queue_to_read(course.gradebook) as queue:
         return queue.find(WAITING, GRADED, REFUSED, FAILED)
 
 
 def page_of(inbound: Path, secret: str) -> Path:
-    """Return where nbgrader looks for the feedback of a submission."""
+    """Return the path at which nbgrader looks for the feedback of a submission."""
     return inbound.parent / 'feedback' / f'{notebook_hash(secret=secret, notebook_id=TOY)}.html'
 
 
 def command(course: Course, inbound: Path, *options: str) -> list[str]:
-    """Return the command that serves a course in a process of its own."""
+    """Return the command that serves a course in a separate process."""
     code = f'import sys; sys.path[:0] = {sys.path!r}; import serving_desk; serving_desk.main()'
     return [sys.executable, '-c', code, str(course.root), str(inbound), *options]
 
 
 async def look(notebook, *, extra_files=(), seed='', trust_students=False):
-    """Say that a doubled number is right; `# SECONDS s` in the answer takes so long."""
+    """Accept an answer with `2 * x`; with `# SECONDS s` in the answer, take that long."""
     answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
     await asyncio.sleep(float(answer.split(' s')[0].removeprefix('# ')) if ' s' in answer else 0.1)
     reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
@@ -96,11 +96,11 @@ async def look(notebook, *, extra_files=(), seed='', trust_students=False):
 
 @contextmanager
 def stood_in() -> Iterator[None]:
-    """Let a look at the answer stand in for rooms, whoever grades."""
+    """Replace the rooms by `look` in this process."""
     with pytest.MonkeyPatch.context() as patch:
         stand_in(look, patch)
         patch.setattr(Here, 'require_isolation', lambda self, **_: True)
-        patch.setattr(reuse, 'machinery', lambda: 'the same code')  # hashing it takes long
+        patch.setattr(reuse, 'machinery', lambda: 'the same code')  # the real hash takes long
         yield
 
 
@@ -111,7 +111,7 @@ def grade_here(course: Course) -> list[SubmissionOutcome]:
 
 
 def serve_here(course: Course, inbound: Path, **options: object) -> list[str]:
-    """Serve until nothing is left; return what it said."""
+    """Serve until nothing is left; return the lines that it printed."""
     said: list[str] = []
     options = {'once': True, 'say': said.append} | options
     with stood_in():

@@ -1,4 +1,4 @@
-"""A small lesson with two exercises, as a student changed it."""
+"""A small lesson with two exercises, with a student's changes."""
 
 import nbformat
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
@@ -41,7 +41,7 @@ SOURCE = new_notebook(
 
 
 def lesson(area='def area(r): return r', node='class Talker: pass\nrate_hz = 5', **own):
-    """Return the restored lesson; `own` are cells of the student's, by the text they follow."""
+    """Return the restored lesson; `own` has the student's own cells, by their position."""
     template = make_template(nbformat.from_dict(SOURCE), nbformat.from_dict(SOURCE))
     submitted = nbformat.from_dict(SOURCE)
     places = {'at_start': 0, 'before_area': 3, 'after_area': 8, 'at_end': 15}

@@ -1,4 +1,4 @@
-"""A backend without rooms: what a function says of a notebook stands in for running it."""
+"""A backend without rooms: a function's verdicts replace running a notebook."""
 
 from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
@@ -18,7 +18,7 @@ from grader.notebook.restore import KEY
 
 
 class Here:
-    """Does in this process what the workers do in theirs."""
+    """Does in this process what workers do in theirs."""
 
     capacity = 4
 
@@ -46,7 +46,7 @@ class Here:
 
 
 def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatch) -> None:
-    """Let `look` stand in for `grader.judging.execute.execute_exercises`, in this process."""
+    """Replace `grader.judging.execute.execute_exercises` by `look`, in this process."""
 
     async def looked(notebook: NotebookNode, **options: Any) -> Execution:
         execution = await look(notebook, **options)
@@ -60,7 +60,7 @@ def stand_in(look: Callable[..., Awaitable[Execution]], patch: pytest.MonkeyPatc
 
 
 def note_tasks(patch: pytest.MonkeyPatch, judge: Callable[[NotebookNode], NotebookNode]) -> list:
-    """Return what nbgrader's passes will hand to their worker; `judge` gives what comes back."""
+    """Return a list of the tasks that nbgrader's preprocessors submit; `judge` makes results."""
     seen: list[task.GradingTask] = []
 
     class Noting:

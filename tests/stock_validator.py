@@ -1,4 +1,4 @@
-"""nbgrader's own Validate, as JupyterLab's button runs it, on many notebooks for test modules."""
+"""nbgrader's own Validator, run on many notebooks as JupyterLab's button would, for tests."""
 
 import logging
 import multiprocessing
@@ -12,17 +12,17 @@ from tempfile import TemporaryDirectory
 from traitlets.config import Config
 
 OURS = ('MY_ROBOT_BASICS_', 'ROS_', 'RCUTILS_', 'FASTRTPS_', 'PYTEST_', 'JPY_')
-"""What a test session has in its environment and a student's JupyterLab has not."""
+"""Prefixes of variables of a test session, which a student's JupyterLab does not have."""
 
 
 @contextmanager
 def validators(at_a_time: int = 4) -> Iterator[Callable[[Iterable[Path]], dict[str, dict]]]:
     """Yield a function that puts notebooks through nbgrader's stock Validator, several at a time.
 
-    What it returns, by the file's stem, is the Validator's own answer ('failed', 'changed' and
-    'type_changed' are lists of cells, by their source), or {'broken': why} where it came to none.
+    It returns, by the file's stem, the Validator's own answer ('failed', 'changed' and
+    'type_changed' are lists of cells, with their source), or {'broken': why} if it raised.
     """
-    context = multiprocessing.get_context('forkserver')  # each importing nbgrader takes long
+    context = multiprocessing.get_context('forkserver')  # imports nbgrader, which is slow, once
     context.set_forkserver_preload(['nbgrader.validator', __name__])
     with ProcessPoolExecutor(at_a_time, mp_context=context, initializer=_leave_the_tests) as pool:
 
@@ -43,10 +43,10 @@ def _leave_the_tests() -> None:
 def _validate(path: Path) -> dict:
     from nbgrader.validator import Validator
 
-    # kernels of other tests may take the TCP ports that were chosen for this one
+    # kernels of other tests may take the TCP ports that were chosen for this kernel
     with TemporaryDirectory(prefix='validate-') as sockets:
         config = Config(KernelManager={'transport': 'ipc', 'ip': f'{sockets}/zmq'})
-        # each student has a workspace of their own: of two packages of one name, one would stay
+        # a workspace for each student: it can't have two packages of the same name
         os.environ['MY_ROBOT_BASICS_WORKSPACE'] = f'{sockets}/ros_ws'
         try:
             return Validator(config=config).validate(str(path))

@@ -1,4 +1,4 @@
-"""Grade a toy class in a process that may be ended at any moment, without rooms."""
+"""Grade a toy class, without rooms, in a process that may be killed at any moment."""
 
 import os
 import signal
@@ -18,11 +18,11 @@ from grader.storage import gradebook, reuse
 from grader.storage.save_grades import SaveGrades
 
 PARTS = ('all', 'storing', 'scores')
-"""Of a run: all of it, the storing of submissions, and of that the writing of their scores."""
+"""Parts of a run: all of it, storing submissions, and, within that, writing their scores."""
 
 
 def kill() -> None:
-    """End this process at once."""
+    """Kill this process at once."""
     os.kill(os.getpid(), signal.SIGKILL)
 
 
@@ -35,11 +35,11 @@ def run(
     strike: Callable[[], object] = kill,
     said: str = os.devnull,
 ) -> None:
-    """Run `./course grade`; be killed at the so manieth call of a function, Python's or C's.
+    """Run `./course grade`; kill it at the `kill_at`-th call of a function of Python or C.
 
-    Counted are those in a part of the run. What is judged goes into `log`, and at the end the
-    status and how many calls there were in each part; what is printed into `said`. Another
-    `strike` hits something else.
+    Only calls in a `part` of the run are counted. `log` gets what is judged, and at the end the
+    status and the number of calls in each part; `said` gets what is printed. `strike` replaces
+    the kill by another disturbance.
     """
     calls, within = dict.fromkeys(PARTS, 0), dict.fromkeys(PARTS, 0) | {'all': 1}
 
@@ -49,7 +49,7 @@ def run(
                 if within[name]:
                     calls[name] += 1
             if kill_at and calls[part] == kill_at:
-                calls[part] += 1  # once
+                calls[part] += 1  # so that it happens only once
                 sys.setprofile(None)
                 strike()
                 sys.setprofile(count)
@@ -77,7 +77,7 @@ def run(
 
 
 def stand_in(log: Path) -> None:
-    """Let a look at the answer's text stand in for the rooms."""
+    """Replace the rooms by a look at the answer's text."""
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')

@@ -1,10 +1,10 @@
-"""A class of any size, made of the sample answers: of each notebook it is known what it earns.
+"""A class of any size, made of the sample answers: it is known what each notebook earns.
 
     .venv/bin/python tests/synthetic_class.py 500 class.zip
 
-writes one as a course management system gives it out. What distinguishes two notebooks with the
-same answer decides nothing: remarks and prints behind it, prose and cells of the student's own,
-and what cells had printed when they were saved.
+writes one as a course platform's download. Notebooks with the same answer differ only in what
+must not matter: comments and prints after it, the student's own text and cells, and stored outputs
+of cells.
 """
 
 import random
@@ -31,7 +31,7 @@ from grader.notebook.restore import grade_id, role
 from grader.storage.records import records, verdicts
 
 HONEST = 0.6
-"""The share of a class that answers rightly."""
+"""The share of a class that answers correctly."""
 REMARKS = (
     'took me an hour',
     'see page 12 of my notes',
@@ -44,18 +44,18 @@ REMARKS = (
 
 @dataclass(frozen=True)
 class Paper:
-    """What one student hands in."""
+    """A student's submission."""
 
     student_id: str
     assignment: str
     sample: str
-    """Whose answers they are."""
+    """The sample whose answers it has."""
     text: str
-    """The notebook's file."""
+    """The content of the notebook's file."""
 
     @property
     def file_name(self) -> str:
-        """Return the path under which it comes in: a folder of the student's, with a package."""
+        """Return its path in the archive: with a package, in a folder of the student's."""
         between = '/' if self.package else '_'
         return f'{self.student_id}{between}{self.assignment}.ipynb'
 
@@ -66,17 +66,17 @@ class Paper:
 
     @property
     def expected(self) -> dict[str, float | None]:
-        """Return the score of each graded cell; None where a person gives it."""
+        """Return the score of each graded cell; None if it is graded by hand."""
         return {name: score for name, (score, *_) in EXPECTED[self.sample].items()}
 
 
 def synthetic_class(
     size: int, *, assignments: Sequence[str] = (), samples: Sequence[str] = (), seed: int = 0
 ) -> list[Paper]:
-    """Return the papers of a class: one of each student, the assignments in turn.
+    """Return the submissions of a class: one for each student, with the assignments in turn.
 
-    Each sample has its turn before one comes again. `assignments` and `samples` choose among
-    them. The same arguments give the same class.
+    Each sample is used once before one is used again. `assignments` and `samples` restrict the
+    choice. The same arguments give the same class.
     """
     chance = random.Random(seed)
     chosen = samples or PATHS
@@ -89,7 +89,7 @@ def synthetic_class(
 
 
 def hand_in(course: Course, papers: Sequence[Paper]) -> None:
-    """Put papers where a course's submissions lie."""
+    """Put submissions into a course's submitted/."""
     for paper in papers:
         folder = course.folder('submitted', paper.student_id, paper.assignment)
         folder.mkdir(parents=True)
@@ -98,7 +98,7 @@ def hand_in(course: Course, papers: Sequence[Paper]) -> None:
 
 
 def zip_up(papers: Sequence[Paper], archive: Path) -> None:
-    """Write papers into one archive."""
+    """Write submissions into one archive."""
     with zipfile.ZipFile(archive, 'w', zipfile.ZIP_DEFLATED) as file:
         for paper in papers:
             file.writestr(paper.file_name, paper.text)
@@ -107,7 +107,7 @@ def zip_up(papers: Sequence[Paper], archive: Path) -> None:
 
 
 def wrong_scores(course: Course, papers: Sequence[Paper]) -> list[str]:
-    """Return a line for each score in the gradebook that is not what its paper earns."""
+    """Return a line for each score in the gradebook that is not the expected one."""
     whose = {(paper.student_id, paper.assignment) for paper in papers}
     found = {
         (record.student_id, record.assignment, record.grade_id): record.score
@@ -129,14 +129,14 @@ def wrong_scores(course: Course, papers: Sequence[Paper]) -> list[str]:
 
 
 def _comment(course: Course, student_id: str, assignment: str, name: str) -> str:
-    """Return what a cell's verdict says, if anything."""
+    """Return the reason and notes of a cell's verdict, if any."""
     said = verdicts(course, student_id, assignment).get(name, {})
     told = [said.get('reason'), *said.get('notes', ())]
     return ''.join(f'; {" ".join(text.split())}' for text in told if text)
 
 
 def _deck(assignment: str, chosen: Sequence[str], chance: random.Random) -> Iterator[str]:
-    """Yield an assignment's samples without end, as many right ones as are honest."""
+    """Yield an assignment's samples without end; HONEST is the share of right ones."""
     ours = [name for name in chosen if assignment_of(PATHS[name]) == assignment]
     right = [name for name in ours if '-pass-' in name]
     wrong = [name for name in ours if '-pass-' not in name]
@@ -150,7 +150,7 @@ def _paper(student_id: str, sample: str, chance: random.Random) -> Paper:
 
 
 def _varied(sample: str, chance: random.Random) -> str:
-    """Return a sample as somebody else would have written it."""
+    """Return a sample with variations that must not matter."""
     text, untouched = _kept(sample)
     if sample.endswith('-not_json'):
         return text
@@ -175,7 +175,7 @@ def _varied(sample: str, chance: random.Random) -> str:
 
 @cache
 def _kept(sample: str) -> tuple[str, frozenset[str]]:
-    """Return a sample as it would be handed in, and the answers that nobody has written."""
+    """Return a sample as it would be handed in, and the sources of unanswered answer cells."""
     release = Course().release(assignment_of(PATHS[sample]))
     untouched = frozenset(cell.source for cell in release.cells if _is_answer(cell))
     return rebased(PATHS[sample], with_demos=True), untouched
@@ -186,7 +186,7 @@ def _is_answer(cell: NotebookNode) -> bool:
 
 
 def _lines(chance: random.Random) -> str:
-    """Return lines of Python that do nothing to anything."""
+    """Return lines of Python without any effect on answers."""
     blank = '\n' * chance.randrange(1, 4)
     return f'{blank}# {chance.choice(REMARKS)}\nprint({chance.choice(REMARKS)!r}){blank}'
 

@@ -1,9 +1,9 @@
-"""The tiers of tests, and a guard: a test that starts something says so.
+"""The tiers of tests, and a guard: a test that starts something must say so.
 
-`./course test --quick` takes no test that starts a kernel, a node, a browser or a sandbox. Such a
-test has the mark `starts`. It gets it here where another mark or a fixture says so, and otherwise
-has it by hand: a name in STARTING_FILES, a decorator, or `@starts` below `@pytest.fixture`. Any
-other test that starts one fails, in each tier.
+`./course test --quick` leaves out tests that start a kernel, a node, a browser or a sandbox. Such
+a test has the mark `starts`. It gets the mark here because of another mark or a fixture, or else
+explicitly: by a name in STARTING_FILES, a decorator, or `@starts` below `@pytest.fixture`. Any
+other test that starts something fails, in each tier.
 """
 
 import multiprocessing.util
@@ -26,9 +26,9 @@ HARMLESS = re.compile(
     r'|\S*/python\S* (?:-P )?-m (?:grader[.\w]*parsing_process|nbgrader generate_assignment)\b.*',
     re.DOTALL,
 )
-"""Commands that any test may run: none of them starts a kernel, and each ends by itself."""
+"""Commands that any test may run: they start no kernel, and end by themselves."""
 STARTING = re.compile(r'\bcolcon build|(?:^|[\s/])ros2 |\brclpy\b|\bipykernel')
-"""Found in the line of a shell that starts something after all."""
+"""Matches a shell command that starts something nevertheless."""
 STARTING_FILES = frozenset(
     """
     checks_clock checks_latched checks_logs checks_sampling checks_predictions checks_relays
@@ -57,20 +57,20 @@ STARTING_FILES = frozenset(
     checks_player checks_waiting_clients checks_wrong_clients command_line lean_imports
     """.split()  # noqa: SIM905
 )
-"""Files, test_NAME.py, of which all tests, or nearly all, start something: if not a kernel, then
-nbgrader's command or `./course` so often that it takes too long for that tier."""
+"""Files, test_NAME.py, in which all tests, or nearly all, start something: a kernel, or nbgrader's
+command or `./course` so often that it takes too long for the quick tier."""
 IMPLY = frozenset({'isolation', 'browser'})
-"""Marks of tests that start something."""
+"""Marks that imply `starts`."""
 
 
 def starts(fixture: Callable) -> Callable:
-    """Decorate the function of a fixture that starts something: so do all tests that use it."""
+    """Decorate a fixture's function that starts something: all tests that use it get the mark."""
     fixture.starts = True
     return fixture
 
 
 def mark(items: list[pytest.Item]) -> None:
-    """Mark the tests that start something by a fixture, or by what another mark says."""
+    """Mark the tests that start something, because of their file, a fixture or another mark."""
     for item in items:
         fixtures = getattr(item, '_fixtureinfo', None)
         used = fixtures.name2fixturedefs.values() if fixtures else ()
@@ -81,14 +81,14 @@ def mark(items: list[pytest.Item]) -> None:
 
 
 def starts_all(path: Path) -> bool:
-    """Whether a path is that of a file of tests that all start something."""
+    """Whether all tests of this file start something."""
     return path.stem.removeprefix('test_') in STARTING_FILES
 
 
 def keep_shard(items: list[pytest.Item], shard: str) -> list[pytest.Item]:
-    """Keep every Nth file of tests from the Kth on; return the tests that are left to others.
+    """Keep every Nth file of tests from the Kth on; return the tests of the other shards.
 
-    Raises pytest.UsageError where `shard` is not K/N.
+    Raises pytest.UsageError if `shard` is not K/N.
     """
     part, _, parts = shard.partition('/')
     if not (part.isdecimal() and parts.isdecimal() and 1 <= int(part) <= int(parts)):
@@ -101,30 +101,30 @@ def keep_shard(items: list[pytest.Item], shard: str) -> list[pytest.Item]:
 
 
 def is_starting(item: pytest.Item) -> bool:
-    """Whether a test says that it starts something."""
+    """Whether a test has the mark `starts`."""
     return item.get_closest_marker('starts') is not None
 
 
 class Guard:
-    """Fails a test that starts something and has no mark that says so; counts ROS contexts.
+    """Fails a test that starts something without the mark `starts`; counts ROS contexts.
 
-    In the tier that starts nothing it refuses to start it, too.
+    In the quick tier it also prevents the start.
     """
 
     def __init__(self, *, refuses: bool) -> None:
-        """Guard this process; without `refuses`, what a test's own thread starts is noted."""
+        """Guard this process; with `refuses`, raise at once, else record what is started."""
         self.refuses = refuses
         self.running: str | None = None
         self.refused: list[str] = []
         self.contexts = 0
-        """How many ROS contexts were begun so far."""
-        if refuses:  # to look whether this machine has a sandbox would start one
+        """How many ROS contexts were initialised so far."""
+        if refuses:  # trying whether this machine has a sandbox would start one
             isolation.protections = tuple
         sys.addaudithook(self._see)
-        spawn = multiprocessing.util.spawnv_passfds  # it starts a process without an audit event
+        spawn = multiprocessing.util.spawnv_passfds  # raises no audit event
 
         def spawn_guarded(path: str, arguments: list, descriptors: list) -> int:
-            if self.refuses:  # other tiers have one of their own: preloaded.py
+            if self.refuses:  # other tiers use it themselves, in preloaded.py
                 self.refuse(f'a process of multiprocessing, {os.fsdecode(path)}')
             return spawn(path, arguments, descriptors)
 
@@ -146,7 +146,7 @@ class Guard:
         self.refused.clear()
 
     def end(self) -> None:
-        """Fail a test where something was refused, whatever it made of that; guard no more."""
+        """Stop guarding; fail the test if it started something, even if it caught the error."""
         self.running = None
         if self.refused:
             what = self.refused[0]
@@ -158,19 +158,19 @@ class Guard:
             )
 
     def refuse(self, what: str) -> None:
-        """Refuse to start something for the test that runs, or note it."""
+        """Refuse to start something for the running test, or record it."""
         if not self.running:
             return
         if self.refuses:
             self.refused.append(what)
             raise RuntimeError(f'{self.running} is not marked as a test that starts {what}')
-        if threading.current_thread() is threading.main_thread():  # others may be of tests before
+        if threading.current_thread() is threading.main_thread():  # others may be earlier tests'
             self.refused.append(what)
 
     def _see(self, event: str, arguments: tuple) -> None:
         if not self.running:
             return
-        if event in ('subprocess.Popen', 'os.posix_spawn'):  # from 3.13 on, both for one process
+        if event in ('subprocess.Popen', 'os.posix_spawn'):  # since 3.13, both for one process
             command = arguments[1] if isinstance(arguments[1], list | tuple) else [arguments[1]]
             line = ' '.join(map(os.fsdecode, command)) + ' '
             if not HARMLESS.fullmatch(line) or STARTING.search(line):

@@ -1,6 +1,6 @@
-"""What `dask worker --preload` makes of a worker: it grades without rooms, as toy_worker.py does.
+"""A `dask worker --preload` module: the worker grades without rooms, as toy_worker.py does.
 
-What it says of itself is in the environment: TOY_NUMPY, TOY_MISSING.
+It takes its versions and missing protection from the environment: TOY_NUMPY, TOY_MISSING.
 """
 
 import os

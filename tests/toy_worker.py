@@ -1,9 +1,9 @@
-"""A worker process that grades without rooms, and does what an answer's first line asks for.
+"""A worker process that grades without rooms, and does what an answer's first line says.
 
-`# die`: is killed; `# die once FILE`: is killed unless the file exists, and makes it first;
-`# stop FILE`: is stopped, once, too; `# wait FILE`: waits for the file; `# fail`: raises;
-`# child`: tells what a process that it starts has open; `# endless`: claims a result of 1 TB;
-`# loop FILE`: makes the file, and does not return to Python.
+`# die`: is killed; `# die once FILE`: is killed, but only once: it creates the file first;
+`# stop FILE`: is stopped (SIGSTOP), also only once; `# wait FILE`: waits for the file;
+`# fail`: raises; `# child`: reports the open files of a process that it starts; `# endless`:
+announces a result of 1 TB; `# loop FILE`: creates the file, and does not return to Python.
 """
 
 import asyncio
@@ -57,7 +57,7 @@ async def look(notebook, *, extra_files=(), seed='', trust_students=False):
     ours = notebook.metadata.setdefault('my_robot_basics', {})
     ours.update({'notes': [], 'seed': seed})
     told = f'note: {os.getpid()}\nnote: {handles}\n'
-    notebook.cells[-2].outputs[0].text += told  # a check may say anything
+    notebook.cells[-2].outputs[0].text += told  # checks may print anything
     return Execution(notebook=notebook, verdicts=(), notes=())
 
 

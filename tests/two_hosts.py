@@ -1,6 +1,6 @@
-"""Two hosts on one machine: two network namespaces with a cable between, and an authority for TLS.
+"""Two hosts on one machine: network namespaces with a cable between them, and a TLS authority.
 
-What is started in a namespace has no network but that cable. It takes root, and Debian's package
+A process in such a namespace has no other network. It needs root and Debian's package iproute2.
 iproute2.
 """
 
@@ -24,7 +24,7 @@ def run(*command: object) -> None:
 
 
 class Hosts:
-    """The namespaces, by the addresses in them. `end` takes them away."""
+    """The namespaces, by their addresses. `end` removes them."""
 
     def __init__(self) -> None:
         if os.geteuid() != 0:
@@ -57,14 +57,14 @@ class Hosts:
                 run('ip', '-n', name, 'link', 'set', link, 'up')
 
     def on(self, address: str) -> tuple[str, ...]:
-        """Return what a command begins with that is to run on a host.
+        """Return the beginning of a command that runs the rest on a host.
 
-        Not `ip netns exec`, which hides /sys/fs/cgroup.
+        It is not `ip netns exec`, which hides /sys/fs/cgroup.
         """
         return ('nsenter', f'--net=/run/netns/{self.names[address]}', '--')
 
     def lose(self, address: str, process: subprocess.Popen) -> None:
-        """Cut a host off, so that nobody is told, and kill what a process has begun there."""
+        """Cut a host off without a message to the other, and kill the processes started there."""
         run('ip', '-n', self.names[address], 'link', 'set', self.cables[address], 'down')
         started = psutil.Process(process.pid)
         for each in [started, *started.children(recursive=True)]:
@@ -77,7 +77,7 @@ class Hosts:
 
 
 class Authority:
-    """Signs certificates of hosts; nobody else trusts it."""
+    """Signs certificates of hosts; only these tests trust it."""
 
     def __init__(self, folder: Path) -> None:
         folder.mkdir()
@@ -86,7 +86,7 @@ class Authority:
         run('openssl', 'req', '-x509', *EC, '-days', '2', *name)
 
     def options(self, host: str) -> list[str]:
-        """Return the options of Dask and of `./course grade` for a certificate of a host's own."""
+        """Return the options of Dask and of `./course grade` for a certificate of this host."""
         cert, key, wanted = (self.folder / f'{host}.{end}' for end in ('pem', 'key', 'csr'))
         if not cert.exists():
             run('openssl', 'req', *EC, '-subj', f'/CN={host}', '-keyout', key, '-out', wanted)

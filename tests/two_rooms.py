@@ -1,4 +1,4 @@
-"""Two rooms for the tests of them: how they are opened, and what is run in each."""
+"""Two rooms, for tests: open them, and run cells in each."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,7 +20,7 @@ threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 
 @contextmanager
 def opened_rooms(loop, **options) -> Iterator[GradingRooms]:
-    """Open two rooms, in a sandbox where this machine has one; close them at the end."""
+    """Open two rooms, in a sandbox if this machine has one; close them at the end."""
     rooms = GradingRooms(seed=SEED, isolated=require_isolation(), **options)
     loop.run(rooms.__aenter__())
     yield rooms
@@ -28,7 +28,7 @@ def opened_rooms(loop, **options) -> Iterator[GradingRooms]:
 
 
 def student_in(loop):
-    """Return what runs a cell of the student's in rooms."""
+    """Return a function that runs a student's cell in rooms."""
 
     def run(rooms, code, timeout_sec=60.0):
         return loop.run(rooms.run_student_cell(code, timeout_sec=timeout_sec))
@@ -37,7 +37,7 @@ def student_in(loop):
 
 
 def check_in(loop):
-    """Return what runs a check in rooms."""
+    """Return a function that runs a check in rooms."""
     return lambda rooms, code: loop.run(rooms.run_check(code))
 
 
