@@ -1,4 +1,4 @@
-"""How students unpack what they are given."""
+"""Unpack the students' zip as students do."""
 
 import shutil
 import subprocess
@@ -8,7 +8,7 @@ from grader.authoring.bundle import FOLDER
 
 
 def unpacked(path, folder):
-    """Unpack as students do; return what came out."""
+    """Unpack the zip as students do; return the folder that it unpacks to."""
     if unzip := shutil.which('unzip'):
         subprocess.run([unzip, '-q', path, '-d', folder], check=True)
     else:

@@ -297,7 +297,7 @@ WRONG = (
 
 
 def _scripts_for_entry_points(files: Files) -> None:
-    """Programs of setuptools' other kind, which colcon's build leaves as for a wheel."""
+    """setuptools' `scripts` instead of entry points; colcon's build leaves them as in a wheel."""
     head, rest = files[SETUP].split('    entry_points={')
     names = 'arm_driver', 'arm_player'
     scripts = [f'scripts/{name}' for name in names]
@@ -307,7 +307,7 @@ def _scripts_for_entry_points(files: Files) -> None:
 
 
 def _finds_no_package(files: Files) -> None:
-    """setup.py looks for folders with an __init__.py, and there is none."""
+    """setup.py searches for folders with an __init__.py, but there is none."""
     without('arm_player/__init__.py')(files)
     swap(
         SETUP,
@@ -452,7 +452,7 @@ if os.fork() == 0:
 
 
 def _setup_starts_a_node(files: Files) -> None:
-    """The driver runs from the build on, and holds colcon's pipe; the executable only waits."""
+    """The build starts the driver, which holds colcon's pipe; the executable only waits."""
     files['arm_player/arm_node.py'] = files[DRIVER]
     files[DRIVER] = 'import time\n\n\ndef main():\n    time.sleep(600)\n'
     files[SETUP] = f'{_STARTS_IT}{files[SETUP]}'

@@ -2,14 +2,15 @@
 
     .venv/bin/python tests/benchmarks/attacks_against_stock.py [--markdown] [ATTACK ...]
 
-Each attack is handed in beside an honest neighbour, once to `./course grade` and once to
-`nbgrader autograde` with its defaults, in a throw-away course. Stock nbgrader has nothing between
-it and its students, so all of it runs in a sandbox of ours, with its course, and is as naked in
+Each attack is handed in together with an honest neighbour, once to `./course grade` and once to
+`nbgrader autograde` with its defaults, in a temporary course. Stock nbgrader does not protect
+itself from student code. So all of it runs in one sandbox of ours, with its course, and is as
+unprotected in there as on a machine of its own.
 there as it is on a machine of its own.
 
-- points: what was stored, beside what honest work of that quality earns.
-- told: the attacker's outputs hold text of a hidden test.
-- spoiled: the neighbour has another score, or something is left: a process, file, connection.
+- points: the stored score, beside what honest work of that quality earns.
+- told: the attacker's outputs contain text of a hidden test.
+- spoiled: the neighbour's score is wrong, or a process, file or connection is left.
 
 Nothing is asserted; the counts are at the end. The whole corpus takes some 45 minutes.
 """
@@ -54,28 +55,28 @@ from grader.storage.submitted import find_submissions
 
 ATTACKER, NEIGHBOUR = 'a-attacker', 'b-neighbour'
 PORT = 40_861
-"""Where the machine's own server listens, for those who knock on it."""
+"""The port of the machine's own server, for attacks that try to connect to it."""
 STOCK_LIMIT_SEC = 300.0
-"""For two submissions; stock nbgrader by itself stops a cell after half a minute."""
+"""For two submissions; stock nbgrader itself stops a cell after half a minute."""
 SLOT = 199
-"""No claimed ROS domain gives it."""
+"""A slot that differs from all claimed ROS domains."""
 STOCK_COURSE = Path('/room/home/course')
 INSIDE = Path(__file__).with_name('stock_autograde.py')
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one attack."""
+    """The result of one attack."""
 
     points: float | None
-    """None where nothing was stored."""
+    """None if nothing was stored."""
     told: bool = False
     spoiled: str = ''
-    """What was left, or became of the neighbour."""
+    """What was left behind, or the neighbour's wrong score."""
 
 
 def against_ours(name: str) -> Outcome:
-    """Hand an attack in to our grader."""
+    """Run an attack against our grader."""
     root = Path(tempfile.mkdtemp(prefix='attacked-'))
     try:
         course = _course(root)
@@ -98,7 +99,7 @@ def against_ours(name: str) -> Outcome:
 
 
 def against_stock(name: str, template: Path) -> Outcome:
-    """Hand an attack in to stock nbgrader, both in a sandbox."""
+    """Run an attack against stock nbgrader, both in a sandbox."""
     root = Path(tempfile.mkdtemp(prefix='attacked-'))
     try:
         course = _course(root)
@@ -120,7 +121,7 @@ def against_stock(name: str, template: Path) -> Outcome:
 
 def _course(root: Path) -> Course:
     course = make_course(root)
-    lesson = toy_lesson()  # stock nbgrader asks for the kernel that it names
+    lesson = toy_lesson()  # stock nbgrader starts the kernel that the lesson names
     lesson.metadata.kernelspec = {'name': 'python3', 'display_name': '', 'language': 'python'}
     write_source(course, lesson)
     release(course, TOY)
@@ -143,7 +144,7 @@ def _outcome(
 
 
 def _tells(autograded: Path) -> bool:
-    """Whether the outputs of a graded notebook hold text of a hidden test."""
+    """Whether the outputs of a graded notebook contain text of a hidden test."""
     for path in autograded.glob('*/*.ipynb'):
         cells = nbformat.read(path, as_version=4).cells
         if CANARY in str([cell.get('outputs') for cell in cells]):
@@ -152,7 +153,7 @@ def _tells(autograded: Path) -> bool:
 
 
 async def _in_a_sandbox(course: Path, assignment: str) -> dict | None:
-    """Run stock nbgrader on a copy of a course; None where it did not come to its end."""
+    """Run stock nbgrader on a copy of a course; return None if it did not finish."""
     sandbox = Sandbox(slot=SLOT)
     try:
         await sandbox.open()
@@ -176,7 +177,7 @@ async def _in_a_sandbox(course: Path, assignment: str) -> dict | None:
         except TimeoutError:
             return None
     finally:
-        await sandbox.close()  # and with it whatever runs there
+        await sandbox.close()  # ends everything that still runs there
     await process.wait()
     try:
         return json.loads(said.splitlines()[-1])
@@ -197,7 +198,7 @@ def make_template(root: Path) -> Path:
         folder.mkdir(parents=True)
         shutil.copy(source, folder)
         command = [sys.executable, '-P', '-m', 'nbgrader', 'generate_assignment', assignment]
-        # nbgrader starts programs of its environment by their names
+        # nbgrader finds its environment's programs on PATH
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ['PATH']])
         subprocess.run(
             command, cwd=template, check=True, capture_output=True, env=os.environ | {'PATH': path}
@@ -210,7 +211,7 @@ def _number(points: float | None) -> str:
 
 
 def rows_of(names: Iterable[str], template: Path) -> Iterable[tuple[str, Outcome, Outcome]]:
-    """Yield each attack with what came of it here and there."""
+    """Yield each attack with its results against our grader and against stock nbgrader."""
     for name in names:
         try:
             ours = against_ours(name)
@@ -233,7 +234,7 @@ def columns(outcome: Outcome) -> list[str]:
 
 
 def counted(title: str, outcomes: dict[str, Outcome]) -> str:
-    """Return one grader's counts in a sentence."""
+    """Return the counts of one grader in a sentence."""
     unlike = {name for name, each in outcomes.items() if each.points != earns(name)}
     more = {name for name in unlike if (outcomes[name].points or 0.0) > earns(name)}
     lost = {name for name in unlike if outcomes[name].points is None}

@@ -1,4 +1,4 @@
-"""A class of five hundred, from the archive that comes in to feedback; every score is verified.
+"""Grade a class of five hundred, from its archive to feedback, and verify every score.
 
     .venv/bin/python tests/benchmarks/class_of_500.py [--students 500] [--workers N]
     .venv/bin/python tests/benchmarks/class_of_500.py --lessons 00 01 02 03 04 05 06 07
@@ -7,14 +7,13 @@
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 20 --lessons 08
     .venv/bin/python tests/benchmarks/class_of_500.py --steady 2 --lessons 0 1 --beside memory disk
 
-`--kill run` grades the class once more, ends the run in mid-class with SIGKILL, twice, goes on
-each time, and compares all that is in the gradebook with that of the run which nobody ended.
-`--kill worker` does so to a worker process, twice, while the run goes on. `--steady` grades an
-honest class, one right answer of each lesson, so many times instead, beside two busy loops, and
-counts the scores that differ; `--at` goes on with one that was ended. With `--lessons` it grades
-all samples of those lessons instead, right and wrong, and looks at the reasons, too. `--beside`
-names other loads: nearly no memory left, a disk that others write to. Ends with 1 where a score
-is wrong.
+`--kill run` grades the class once more, kills the run with SIGKILL in mid-class, twice, continues
+each time, and compares the whole gradebook with that of the undisturbed run. `--kill worker` kills
+a worker process instead, twice, while the run goes on. `--steady` grades an honest class, one
+right answer of each lesson, that many times beside two busy loops, and counts the scores that
+differ; `--at` continues one that was interrupted. With `--lessons`, it grades all samples of those
+lessons instead, right and wrong, and checks the reasons, too. `--beside` chooses other loads:
+nearly no free memory, or a disk that others write to. The exit status is 1 if a score is wrong.
 """
 
 import argparse
@@ -32,7 +31,7 @@ from synthetic_class import Paper, synthetic_class, wrong_scores, zip_up
 
 
 def main() -> int:
-    """Grade what was asked for, and print the table."""
+    """Grade as the options say, and print the table."""
     parser = argparse.ArgumentParser()
     parser.add_argument('--students', type=int, default=500)
     parser.add_argument('--seed', type=int, default=0)
@@ -59,7 +58,7 @@ def main() -> int:
 
 
 def _whole_class(papers: Sequence[Paper], options: list[str]) -> tuple[Course, int]:
-    """Take a class from its archive to its feedback; return where it lies, and 1 if wrong."""
+    """Take a class from its archive to its feedback; return its course, and 1 if it is wrong."""
     course = new_course('class')
     archive = course.gradebook.with_name('class.zip')
     zip_up(papers, archive)

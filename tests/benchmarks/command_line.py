@@ -2,11 +2,11 @@
 
     .venv/bin/python tests/benchmarks/command_line.py [RUNS] [--against FOLDER] [--sample NAME]
 
-FOLDER is an earlier commit's working copy with a .venv of its own (`./course doctor` there makes
-it): both are asked by turns, so that they meet the same machine. Each has a throw-away gradebook
-with one submission, the sample NAME; what runs for `grade` there is all behind the launcher, which
-the usage errors have in them. CPU is that of all processes that were waited for: kernels are
-forked by servers, and theirs is not in it. Nothing is asserted: look at the ratios.
+FOLDER is the working copy of an earlier commit with its own .venv (`./course doctor` makes it):
+commands alternate between both, so that they run under the same conditions. Each has a temporary
+gradebook with one submission, the sample NAME. `grade` is started without the launcher; the
+rows with wrong arguments include the launcher. CPU is that of all processes that were waited for;
+kernels are forked by servers, so theirs is not included. Nothing is asserted: look at the ratios.
 """
 
 import argparse
@@ -30,7 +30,7 @@ FIXED = {
     './course grade --nonsense': ['./course', 'grade', '--nonsense'],
     './course collect': ['./course', 'collect'],
 }
-"""Commands that read and write nothing of a gradebook."""
+"""Commands that do not use a gradebook."""
 NOTHING_NEW, FIRST = 'grade, nothing new', 'grade, one, cold'
 ELSEWHERE = """
 import dataclasses, sys
@@ -43,35 +43,35 @@ def grade(course, asked):
 run, verbs.run_grade = verbs.run_grade, grade
 getattr(__main__, 'run', lambda: sys.exit(__main__.main()))()  # an earlier commit has no `run`
 """
-"""What the launcher starts for `./course grade`, with another gradebook, in the same order."""
+"""What the launcher runs for `./course grade`, but with another gradebook."""
 
 
 @dataclass
 class Taken:
-    """What the runs of one command took."""
+    """The times of one command's runs."""
 
     wall_sec: list[float] = field(default_factory=list)
     cpu_sec: list[float] = field(default_factory=list)
 
     def median(self) -> tuple[float, float]:
-        """Return the medians in milliseconds, of wall and CPU time."""
+        """Return the medians of wall time and CPU time, in milliseconds."""
         return 1000 * statistics.median(self.wall_sec), 1000 * statistics.median(self.cpu_sec)
 
 
 @dataclass(frozen=True)
 class Checkout:
-    """A working copy of the course, with the gradebook that it grades into."""
+    """A working copy of the course, with a temporary gradebook."""
 
     root: Path
     gradebook: Path
     taken: dict[str, Taken] = field(default_factory=dict)
 
     def grade(self) -> list[str]:
-        """Return the command that is `./course grade` behind the launcher."""
+        """Return the command of `./course grade` without the launcher."""
         return ['.venv/bin/python', '-P', '-c', ELSEWHERE, str(self.gradebook)]
 
     def run(self, name: str, command: list[str]) -> None:
-        """Time a command."""
+        """Run a command, and record its times."""
         taken = self.taken.setdefault(name, Taken())
         environment = {k: v for k, v in os.environ.items() if not k.startswith(('COV', '_ROS'))}
         environment |= {'PATH': f'{self.root}/.venv/bin:{os.environ["PATH"]}'}
@@ -82,7 +82,7 @@ class Checkout:
         taken.cpu_sec.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
 
     def forget(self) -> None:
-        """Let the submission be a new one to a gradebook that exists."""
+        """Remove the result, so that the submission counts as new in the same gradebook."""
         shutil.rmtree(self.gradebook / 'autograded', ignore_errors=True)
 
 
@@ -105,7 +105,7 @@ def main(runs: int, against: Path | None, sample: str) -> None:
 
 
 def hand_in(checkout: Checkout, sample: str) -> None:
-    """Put the sample where the checkout's submissions lie."""
+    """Put the sample into the gradebook's submitted/."""
     assignment = sample.split('-')[0]
     folder = checkout.gradebook / 'submitted/ada' / assignment
     folder.mkdir(parents=True)
@@ -113,7 +113,7 @@ def hand_in(checkout: Checkout, sample: str) -> None:
 
 
 def print_table(checkouts: list[Checkout], runs: int) -> None:
-    """Print the medians in milliseconds, and how much of the other's time this one takes."""
+    """Print the medians in milliseconds, and their ratios to those of the other working copy."""
     ours, *others = checkouts
     print(f'{f"median of {runs}, in ms":28} {"wall":>7} {"CPU":>7}', end='')
     print(f' {"wall":>9} {"CPU":>7} {"ratio":>9} {"of CPU":>7}' if others else '')

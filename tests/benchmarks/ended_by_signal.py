@@ -1,10 +1,10 @@
-"""How often a plain node waits on for ever after SIGTERM, and after SIGINT.
+"""How often a plain node does not end after SIGTERM, and after SIGINT.
 
     .venv/bin/python tests/benchmarks/ended_by_signal.py [TIMES]
 
-Beside a busy loop for each processor, three nodes at a time: one for each signal, and one that
-gets SIGINT as a shell's `&` leaves it to its children: ignored, until rclpy takes it over. Nothing
-is asserted.
+Beside a busy loop for each processor, three nodes run at a time: one for each signal, and one that
+gets SIGINT although it was started with SIGINT ignored, as children of a shell's `&` are; rclpy
+installs its own handler. Nothing is asserted.
 """
 
 import os
@@ -40,7 +40,7 @@ WAYS = {'SIGTERM': signal.SIGTERM, 'SIGINT': signal.SIGINT, IGNORED: signal.SIGI
 
 
 def ends(way: str) -> bool:
-    """Whether a node ends that gets a signal some tenths of a second after it is ready."""
+    """Whether a node ends after a signal, sent some tenths of a second after it is ready."""
 
     def prepare() -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN if way == IGNORED else signal.SIG_DFL)
@@ -62,7 +62,7 @@ def ends(way: str) -> bool:
 
 
 def main() -> None:
-    """Count those that do not end."""
+    """Count the nodes that do not end."""
     times = int(sys.argv[1]) if len(sys.argv) > 1 else 50
     loops = [
         subprocess.Popen([sys.executable, '-c', 'while True: pass'])

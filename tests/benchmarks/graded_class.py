@@ -3,10 +3,11 @@
     .venv/bin/python tests/benchmarks/graded_class.py grade GRADEBOOK [--against FOLDER]
     .venv/bin/python tests/benchmarks/graded_class.py feedback GRADEBOOK [--rounds 3]
 
-GRADEBOOK is one that was graded, as class_of_500.py leaves it. A copy of it is told that its
-results are those of this very grader. FOLDER is an earlier commit's working copy with a .venv of
-its own: it has a copy, too, and both run by turns, so that they meet the same machine. CPU is that
-of all processes that were waited for. Ends with 1 where the tables or the pages differ.
+GRADEBOOK is a graded one, as class_of_500.py leaves it. In a copy of it, results are marked as
+made by this very grader. FOLDER is the working copy of an earlier commit with its own .venv: it
+has a copy, too, and runs alternate between both, so that they run under the same conditions. CPU
+is that of all processes that were waited for. The exit status is 1 if the tables or the pages
+differ.
 """
 
 import argparse
@@ -57,7 +58,7 @@ for path in sorted(course.gradebook.glob('autograded/*/*/*.ipynb')):
 
 
 def main(verb: str, source: Path, against: Path | None, rounds: int) -> int:
-    """Print a row for each working copy; return 1 where their tables differ."""
+    """Print a row for each working copy; return 1 if their tables differ."""
     taken: dict[Path, list[tuple[float, float]]] = {}
     said: set[str] = set()
     with tempfile.TemporaryDirectory(prefix='graded_class-') as folder:
@@ -93,7 +94,7 @@ def _digest(pages: Path) -> str:
 
 
 def _run(root: Path, code: str, gradebook: Path, *arguments: str) -> str:
-    """Run code by a working copy's grader; return what it prints."""
+    """Run code with a working copy's grader; return what it prints."""
     return subprocess.run(
         [f'{root}/.venv/bin/python', '-P', '-c', code, str(gradebook), *arguments],
         cwd=root,

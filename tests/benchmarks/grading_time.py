@@ -1,10 +1,10 @@
-"""Time per graded submission, beside stock nbgrader on the same notebook in the same run.
+"""Time per graded submission, compared with stock nbgrader on the same notebooks in the same run.
 
     .venv/bin/python tests/benchmarks/grading_time.py [RUNS]
 
-Stock means nbgrader's own Execute: all cells in one kernel, hidden tests included, one submission
-after the other. It runs the demonstrations of a lesson, too; the last columns leave them out.
-Nothing is asserted: look at the ratios, milliseconds are this machine's.
+Stock means nbgrader's own Execute: all cells in one kernel, with hidden tests, one submission
+after another. It also runs the demonstrations of a lesson; the last columns leave them out.
+Nothing is asserted: look at the ratios, because milliseconds depend on the machine.
 """
 
 import statistics
@@ -42,11 +42,11 @@ NAMES = (
 PARTS = ('start', 'probe', 'student cells', 'checks', 'stop')
 
 spent: dict[str, list[float]] = defaultdict(list)
-"""How long each call of a part took, in seconds."""
+"""The seconds that each call of a part took."""
 
 
 def timed(part: str, method: Callable[..., Awaitable]) -> Callable[..., Awaitable]:
-    """Return an asynchronous method that also writes down how long it takes."""
+    """Return an asynchronous method that also records how long it takes."""
 
     async def and_timed(*args: object, **kwargs: object) -> object:
         began = time.perf_counter()
@@ -59,7 +59,7 @@ def timed(part: str, method: Callable[..., Awaitable]) -> Callable[..., Awaitabl
 
 
 def watch_the_rooms() -> None:
-    """Let every part of a grading be timed."""
+    """Patch the rooms so that each part of a grading is timed."""
     GradingKernel.start = timed('start', GradingKernel.start)
     GradingRooms.__aenter__ = timed('open', GradingRooms.__aenter__)
     GradingRooms.run_student_cell = timed('student cells', GradingRooms.run_student_cell)
@@ -68,16 +68,16 @@ def watch_the_rooms() -> None:
 
 
 def seconds(work: Callable[..., object], *args: object) -> float:
-    """Return how long something takes."""
+    """Return how many seconds a call takes."""
     began = time.perf_counter()
     work(*args)
     return time.perf_counter() - began
 
 
 def parts_of_one() -> dict[str, float]:
-    """Return where the time of the gradings since the last call went, and forget it."""
+    """Return the seconds of each part since the last call, and forget them."""
     parts = {part: sum(spent[part]) for part in PARTS}
-    # two kernels start side by side; what is left of opening the rooms is the probe
+    # two kernels start at the same time; the rest of opening the rooms is the probe
     parts['start'] = sum(max(pair) for pair in zip(*[iter(spent['start'])] * 2, strict=True))
     parts['probe'] = sum(spent['open']) - parts['start']
     spent.clear()
@@ -85,7 +85,7 @@ def parts_of_one() -> dict[str, float]:
 
 
 def without_demonstrations(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Return a copy of a notebook without what is only shown."""
+    """Return a copy of a notebook without its demonstrations."""
     shorter = nbformat.from_dict(notebook)
     shorter.cells = [cell for cell in shorter.cells if role(cell) != 'demo']
     return shorter

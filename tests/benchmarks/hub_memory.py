@@ -1,8 +1,8 @@
 """What a student takes of a hub's memory: `sudo .venv/bin/python tests/benchmarks/hub_memory.py`.
 
-It sets a hub up, in folders and with users of its own that it takes away again, and lets each
-student log in, open a lesson and follow the live arm. Printed is the proportional share (PSS) of
-all processes of a user, so that what students share is counted once. As root: it adds users.
+It sets up a hub with temporary folders and users, and lets each student log in, open a lesson and
+follow the live arm. It prints the proportional set size (PSS) of all processes of a user, so that
+shared memory is counted once. It needs root, because it adds users.
 """
 
 import argparse
@@ -39,7 +39,7 @@ def main() -> None:
         pages = [log_in(browser, machine, student) for student in machine.students]
         for page in pages:
             wait_for_lab(page)
-        # the contents page has begun a kernel
+        # the contents page has started a kernel
         for page in pages:
             page.evaluate('jupyterapp.serviceManager.sessions.shutdownAll()')
         print(f'{number} students, MB of each at the mean and at most')
@@ -57,13 +57,13 @@ def main() -> None:
 
 
 def tell(state: str, students: tuple[str, ...]) -> None:
-    """Print what students take in a state."""
+    """Print the memory of the students' processes in a state."""
     taken = [pss_mb(student) for student in students]
     print(f'{state:<28}{mean(taken):>6.0f}{max(taken):>6.0f}', flush=True)
 
 
 def pss_mb(user: str) -> float:
-    """Return the memory of all processes of a user, with their share of what is shared."""
+    """Return the PSS of all processes of a user in MB."""
     processes = [p for p in psutil.process_iter(['username']) if p.info['username'] == user]
     return sum(process.memory_full_info().pss for process in processes) / 1e6
 

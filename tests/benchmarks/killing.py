@@ -1,8 +1,8 @@
-"""A class whose grading is killed on the way, beside one that nobody disturbed.
+"""Compare a class whose grading was killed several times with one that was not disturbed.
 
-All that a gradebook holds is compared: scores, what a person gave and wrote, what is due and what
-lateness cost, the verdicts with their reasons, and the pages of feedback. Numbers in reasons and
-in pages are left out, for rates are measured; so are pictures, for they show what was measured.
+Everything in the gradebook is compared: scores, manual scores and comments, due dates and late
+penalties, the verdicts with their reasons, and the feedback pages. Numbers in reasons and pages
+are ignored, because rates are measured, and so are pictures, because they show measured values.
 """
 
 import re
@@ -44,10 +44,10 @@ _DATABASE = {
 
 
 def killed(what: str, whole: Course, papers: Sequence[Paper], options: Sequence[str]) -> bool:
-    """Grade the class once more, with kills; return whether it ends otherwise."""
+    """Grade the class once more, with kills; return whether the result differs."""
     course = new_course('killed')
     list(collect(course, whole.gradebook.with_name('class.zip')))
-    # hidden tests choose the same inputs
+    # with the same secret, hidden tests choose the same inputs
     shutil.copy(whole.gradebook / 'course_secret', course.gradebook)
     moments = [max(1, len(papers) // 3), max(2, 2 * len(papers) // 3)]
     if what == 'run':
@@ -71,9 +71,9 @@ def killed(what: str, whole: Course, papers: Sequence[Paper], options: Sequence[
 
 
 def read_answers(course: Course, but: set[str] = frozenset()) -> set[str]:
-    """Give points and a comment for each answer that waits for a person, as a person would.
+    """Give points and a comment for each answer that waits for manual grading.
 
-    Not to students in `but`, whose answers were read before. Return all whose were read.
+    Skip students in `but`, whose answers were graded before. Return all students graded by hand.
     """
     given = set(but)
     with Gradebook(course.db_url) as book:
@@ -93,7 +93,7 @@ def read_answers(course: Course, but: set[str] = frozenset()) -> set[str]:
 
 
 def everything(course: Course) -> dict[str, Mapping]:
-    """Return all that a gradebook holds, by kind and by place."""
+    """Return the content of a gradebook, by kind and by key."""
     found = records(course)
     graded = {(each.student_id, each.assignment) for each in found if each.submitted}
     pages = course.folder('feedback', '', '').glob('*/*/*.html')
@@ -112,7 +112,7 @@ def everything(course: Course) -> dict[str, Mapping]:
 
 
 def differ(whole: Mapping[str, Mapping], other: Mapping[str, Mapping]) -> bool:
-    """Print how much there is of each kind, and what is not the same; return whether any is."""
+    """Print how many entries of each kind differ, and which; return whether any does."""
     print('Differs from the run that nobody ended:')
     lines = []
     for kind, ours in whole.items():
@@ -131,7 +131,7 @@ def _told_apart(one: object, other: object) -> str:
 
 
 def _rows(database: sqlite3.Connection, query: str) -> dict[tuple, list[tuple]]:
-    """Return rows by their first two columns: one that is there twice is not lost."""
+    """Return rows by their first two columns, as lists, so that duplicates are kept."""
     found: dict[tuple, list[tuple]] = {}
     for row in sorted(database.execute(query), key=str):
         found.setdefault(row[:2], []).append(row[2:])

@@ -2,9 +2,9 @@
 
     .venv/bin/python tests/benchmarks/latency.py [--beside 0 1 10 50] [--rounds 1] [LESSON ...]
 
-For each lesson all its sample answers, right and wrong, are handed to warm workers, and as soon as
-one is done the next one is, so that so many others are always under way. It is measured from
-handing in to the verdict: what waits for its turn counts, storing and feedback do not.
+For each lesson, all its sample answers, right and wrong, are submitted to warm workers. As soon as
+one is graded the next is submitted, so the number of others is constant. The time is measured from
+submitting to the verdict: it includes waiting for a turn, but not storing and feedback.
 """
 
 import argparse
@@ -40,13 +40,13 @@ def main() -> None:
         for lesson in asked.lessons:
             theirs = [each for each in found if each.assignment == lesson]
             prepared = grading.prepare(lesson)
-            latencies(grading, prepared, theirs[:2], beside=1, count=2)  # the workers get warm
+            latencies(grading, prepared, theirs[:2], beside=1, count=2)  # warms the workers up
             for beside in asked.beside:
                 count = max(asked.rounds * len(theirs), 2 * (beside + 1))
                 took = latencies(grading, prepared, theirs, beside=beside, count=count)
                 p50, p95, p99, a_minute = percentiles(took)
                 figures = f'{len(took):9} {p50:7.1f} {p95:7.1f} {p99:7.1f} {a_minute:9.1f}'
-                print(f'{lesson:18} {beside:6} {figures}', flush=True)  # it takes most of an hour
+                print(f'{lesson:18} {beside:6} {figures}', flush=True)  # all takes most of an hour
 
 
 def latencies(
@@ -57,7 +57,7 @@ def latencies(
     beside: int,
     count: int,
 ) -> dict[Future, tuple[float, float]]:
-    """Have so many graded, `beside` + 1 at a time; return when each began and when it ended."""
+    """Have `count` submissions graded, `beside` + 1 at a time; return start and end of each."""
     began: dict[Future, float] = {}
     ended: dict[Future, float] = {}
     under_way: set[Future] = set()
@@ -70,14 +70,14 @@ def latencies(
         if len(under_way) > beside:
             _, under_way = wait(under_way, return_when=FIRST_COMPLETED)
     for work in began:
-        work.result()  # what could not be graded is no figure
-    while len(ended) < len(began):  # a future is done before it calls back
+        work.result()  # raises if a submission could not be graded
+    while len(ended) < len(began):  # a future is done before it runs its callbacks
         time.sleep(0.001)
     return {work: (start, ended[work]) for work, start in began.items()}
 
 
 def percentiles(took: dict[Future, tuple[float, float]]) -> tuple[float, float, float, float]:
-    """Return p50, p95 and p99 in seconds, and how many came to their end in a minute."""
+    """Return p50, p95 and p99 in seconds, and how many were graded in a minute."""
     hundredths = statistics.quantiles(
         [end - start for start, end in took.values()], n=100, method='inclusive'
     )

@@ -1,8 +1,8 @@
-"""What a machine may have to do beside: processors kept busy, memory nearly gone, slow disks.
+"""Loads on the machine during a measurement: busy processors, little memory, a busy disk.
 
     .venv/bin/python tests/benchmarks/loads.py KIND FOLDER
 
-is one such process, until the one that started it ends; `beside` starts what it is asked for.
+is one process of a load, which ends with its parent process; `beside` starts the loads.
 """
 
 import mmap
@@ -17,22 +17,22 @@ from pathlib import Path
 import psutil
 
 LEFT_BYTES = 100 * 2**20
-"""So little memory is left, that of files which may be read again included: programs lose pages
-that they need …"""
+"""The memory that is left available, including the page cache: programs lose pages that they
+need."""
 PIECE_BYTES = 16 * 2**20
-"""… and get or give back so much at a time."""
+"""How much memory is taken or given back at a time."""
 FILE_BYTES = 512 * 2**20
-"""More than is left: who writes it, again and again, keeps the disk from all others."""
+"""More than LEFT_BYTES: writing this again and again keeps the disk busy."""
 
 
 def keep_busy(_: Path) -> Iterator[None]:
-    """Use a processor."""
+    """Use one processor."""
     while True:
         yield
 
 
 def use_memory(_: Path) -> Iterator[None]:
-    """Take what memory there is, and give back what others ask for."""
+    """Take all memory but LEFT_BYTES, and give some back when other processes need it."""
     taken: list[mmap.mmap] = []
     while True:
         left = psutil.virtual_memory().available
@@ -48,10 +48,10 @@ def use_memory(_: Path) -> Iterator[None]:
 
 
 def use_disk(folder: Path) -> Iterator[None]:
-    """Write a large file, wait until the disk has it, and read it from there."""
+    """Write a large file, wait until it is on the disk, and read it from there."""
     path, piece = folder / f'load-{os.getpid()}', os.urandom(PIECE_BYTES)
     with path.open('w+b', buffering=0) as file:
-        path.unlink()  # nothing stays, however this ends
+        path.unlink()  # so no file remains, however this process ends
         while True:
             file.seek(0)
             for _ in range(FILE_BYTES // PIECE_BYTES):
@@ -69,14 +69,14 @@ KINDS: dict[str, tuple[Callable[[Path], Iterator[None]], int]] = {
     'memory': (use_memory, 1),
     'disk': (use_disk, 2),
 }
-"""What each does, and in how many processes."""
+"""By kind of load: its function, and the number of its processes."""
 
 
 @contextmanager
 def beside(kinds: Sequence[str], folder: Path) -> Iterator[None]:
-    """Keep the machine so occupied, from now on; `folder` is on the disk that is meant.
+    """Keep these loads on the machine during the block; `folder` is on the disk to use.
 
-    Raises RuntimeError at the end where such a process ended before.
+    Raises RuntimeError at the end if a process of a load has ended early.
     """
     started = [
         subprocess.Popen([sys.executable, __file__, kind, str(folder)], stdout=subprocess.PIPE)
@@ -96,7 +96,7 @@ def beside(kinds: Sequence[str], folder: Path) -> Iterator[None]:
 
 @contextmanager
 def telling_pressure() -> Iterator[None]:
-    """Print at the end for how much of the time some process waited, and for what."""
+    """Print at the end the share of time in which some process waited, by resource."""
     began, before = time.monotonic(), _stalled_sec()
     yield
     seconds = time.monotonic() - began
@@ -105,7 +105,7 @@ def telling_pressure() -> Iterator[None]:
 
 
 def _stalled_sec() -> dict[str, float]:
-    """For how long so far some process waited for each, as Linux tells it (PSI)."""
+    """Return how long some process has waited for each resource so far, from Linux's PSI."""
     names = {'a processor': 'cpu', 'memory': 'memory', 'a disk': 'io'}
     lines = [Path('/proc/pressure', name).read_text('ascii') for name in names.values()]
     totals_us = (int(line.split()[4].partition('=')[2]) for line in lines)
@@ -113,9 +113,9 @@ def _stalled_sec() -> dict[str, float]:
 
 
 def main(kind: str, folder: str) -> None:
-    """Be such a process, first to go where memory runs out, no longer than who started it.
+    """Run one process of a load until its parent ends; the OOM killer ends it first.
 
-    Says when it has begun.
+    It prints a line when it has begun.
     """
     Path('/proc/self/oom_score_adj').write_text('1000', encoding='ascii')
     parent, occupied = os.getppid(), KINDS[kind][0](Path(folder))

@@ -1,9 +1,9 @@
-"""What the benchmarks of whole classes share: a throw-away gradebook, and watched commands.
+"""Shared by benchmarks of whole classes: a temporary gradebook, and commands that are watched.
 
     .venv/bin/python tests/benchmarks/measuring.py GRADEBOOK VERB ...
 
-is `./course VERB ...` with a gradebook that lies elsewhere; the last line on stderr says how many
-seconds went into storing.
+is `./course VERB ...` with another gradebook; the last line on stderr says how many seconds
+storing took.
 """
 
 import os
@@ -30,42 +30,42 @@ from grader.__main__ import main
 from grader.course import Course
 
 ROW = r'^student_\d+ '
-"""What `./course grade` prints of each student of a synthetic class."""
+"""Matches the line of a synthetic student in the output of `./course grade`."""
 STORED = re.compile(r'^seconds in the database: ([\d.]+)$', re.MULTILINE)
 
 
 @dataclass
 class Watched:
-    """A command that ran to its end, or was killed."""
+    """A command that has ended, by itself or killed."""
 
     status: int = 0
     seconds: float = 0.0
     done_at: list[float] = field(default_factory=list)
     """When each submission was done, in seconds since the start."""
     peak_bytes: int = 0
-    """Of the command and all that it has begun: what shared pages hold is counted once (PSS)."""
+    """Peak memory (PSS, so shared pages count once) of the command and all its processes."""
     said: str = ''
-    """On stdout and stderr."""
+    """Its output on stdout and stderr."""
 
     @property
     def database_sec(self) -> float:
-        """Return how long storing took."""
+        """Return how many seconds storing took."""
         return float(STORED.findall(self.said)[-1])
 
     @property
     def per_minute_warm(self) -> float:
-        """Return the rate from the first third of the submissions on."""
+        """Return the submissions per minute, without the first third."""
         first = len(self.done_at) // 3
         return 60 * (len(self.done_at) - 1 - first) / (self.done_at[-1] - self.done_at[first])
 
 
 def new_course(name: str) -> Course:
-    """Return the course's lessons with an empty gradebook in a temporary folder, which stays."""
+    """Return the course with an empty gradebook in a temporary folder, which is kept."""
     return Course(gradebook=Path(tempfile.mkdtemp(prefix=f'{name}-'), 'gradebook'))
 
 
 def course_command(course: Course, *arguments: object) -> list[str]:
-    """Return the command that is `./course ...` with this gradebook."""
+    """Return the command for `./course ...` with this gradebook."""
     return [sys.executable, '-P', __file__, str(course.gradebook), *map(str, arguments)]
 
 
@@ -76,16 +76,16 @@ def watch(
     cwd: Path = ROOT,
     meanwhile: Mapping[int, Callable[[psutil.Process], None]] = MappingProxyType({}),
 ) -> Watched:
-    """Run a command; a line that matches `done` tells of a submission.
+    """Run a command; each output line that matches `done` counts as a finished submission.
 
-    `meanwhile` says what to do to the command after so many.
+    `meanwhile` has functions that are called with the process after that many submissions.
     """
     watched, lines = Watched(), []
     began = time.perf_counter()
     process = subprocess.Popen(
         command,
         cwd=cwd,
-        # as from the environment's command line
+        # as in an activated virtual environment
         env=os.environ | {'PATH': f'{Path(sys.executable).parent}:{os.environ["PATH"]}'},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
@@ -108,13 +108,13 @@ def watch(
 
 
 def kill_a_worker(run: psutil.Process) -> None:
-    """End one of a run's worker processes as Linux does where memory runs out."""
+    """Kill one of a run's worker processes, as Linux's OOM killer would."""
     workers = [each for each in run.children() if 'grader.workers.begin_worker' in each.cmdline()]
     workers[0].kill()
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    """Print a table; numbers are put below each other."""
+    """Print a table with right-aligned columns."""
     texts = [list(heads), *([_text(field) for field in row] for row in rows)]
     widths = [max(len(row[i]) for row in texts) for i in range(len(heads))]
     for row in texts:
@@ -126,7 +126,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
 
 
 def minutes(seconds: float) -> str:
-    """Return a duration as people say it."""
+    """Return a duration in minutes and seconds, as text."""
     return f'{seconds // 60:.0f} min {seconds % 60:.0f} s'
 
 
@@ -139,7 +139,7 @@ def _ended_with_us(process: subprocess.Popen) -> Iterator[None]:
     try:
         yield
     except BaseException:
-        process.terminate()  # it ends all that it runs
+        process.terminate()  # it ends all processes that it runs
         process.wait()
         raise
 

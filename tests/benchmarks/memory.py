@@ -1,7 +1,6 @@
-"""How much memory a command takes, with all that it has begun.
+"""How much memory a command uses, with all processes that it starts.
 
-What forks kernels leaves the tree of processes below the command, and keeps the session that it
-began.
+Fork servers leave the process tree of the command, but stay in the session that they start.
 """
 
 import os
@@ -15,23 +14,23 @@ from pathlib import Path
 import psutil
 
 LOOK_SEC = 0.5
-"""So often memory is looked at."""
+"""Interval at which memory is measured."""
 
 
 class Family:
-    """A process, what it has begun, and what these have."""
+    """A process, its descendants, and those in the sessions of its fork servers."""
 
     def __init__(self, pid: int) -> None:
-        """Begin with a process, before it has begun any other."""
+        """Take a process that has not started any other yet."""
         self._root = pid
         self._sessions: set[int] = set()
 
     def pss_bytes(self) -> int:
-        """Return what they take now: what shared pages hold is counted once (PSS)."""
+        """Return the memory that they use now (PSS, so shared pages count once)."""
         return sum(map(_pss, self.members()))
 
     def members(self) -> set[psutil.Process]:
-        """Return all of them that live; to be called often enough to see each server begin."""
+        """Return all that are alive; call it often, to see each fork server when it starts."""
         tree = _with_children(self._root)
         for process in tree:
             with suppress(psutil.Error, ProcessLookupError):
@@ -43,7 +42,7 @@ class Family:
 
 @contextmanager
 def peak_of(pid: int) -> Iterator[list[int]]:
-    """Give a list that has one element in the end: the most bytes that were seen."""
+    """Yield a list with one element; at the end it is the peak in bytes."""
     over, family, peak = threading.Event(), Family(pid), [0]
 
     def look() -> None:
@@ -78,5 +77,5 @@ def _pss(process: psutil.Process) -> int:
     try:
         rollup = Path(f'/proc/{process.pid}/smaps_rollup').read_text(encoding='ascii')
     except (FileNotFoundError, ProcessLookupError):
-        return 0  # it has ended since
+        return 0  # it has ended
     return 1024 * int(re.search(r'^Pss:\s+(\d+) kB', rollup, re.MULTILINE)[1])

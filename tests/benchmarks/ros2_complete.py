@@ -2,12 +2,11 @@
 
     .venv/bin/python tests/benchmarks/ros2_complete.py [CALLS] [--beside CHECKOUT]
 
-The nodes are no part of a lesson: they lack the course's discovery profile and range. Topics, the
-ends of one, and services are asked for by turns, each time in a process of its own. With CHECKOUT,
-another working copy of this repository, its `ros2` is asked the same in turn, so that both meet
-the same machine. So is one that looks for half a second, as ros2cli does without its daemon. The
-first row is a process that imports rclpy and makes a node: no call can do without. Nothing is
-asserted.
+The nodes lack a lesson's discovery profile and range. Topics, the endpoints of one, and services
+are listed in turn, each time in a new process. With CHECKOUT, another working copy of this
+repository, its `ros2` runs the same in turn, so that both run under the same conditions. So does
+one that discovers for half a second, as ros2cli does without its daemon. The first row is a
+process that imports rclpy and makes a node, which every call needs. Nothing is asserted.
 """
 
 import argparse
@@ -28,21 +27,21 @@ from ros2_command import OF_A_LESSON, own_domain, plain_nodes
 START = 'my_robot_basics/my_robot_basics/ros2/start.py'
 ONE_NODE = 'import rclpy; rclpy.init(); rclpy.create_node("_bare"); rclpy.shutdown()'
 ANNOUNCED_SEC = 3.5
-"""The nodes' first announcements are over then, and later ones come every 3 s."""
+"""After that the nodes' first announcements are over; later ones come every 3 s."""
 FLOOR = 'rclpy, one node'
 HALF_A_SECOND = 'half a second'
 
 
 @dataclass
 class Tally:
-    """What came of the calls of one kind."""
+    """The results of the calls of one kind."""
 
     complete: int = 0
     took_sec: list[float] = field(default_factory=list)
 
 
 def main(calls: int, beside: Path | None) -> None:
-    """Print a table for each system of nodes."""
+    """Print a table for each number of nodes."""
     os.environ.setdefault('ROS_DOMAIN_ID', '0')
     ros2 = [sys.executable, '-P', ROOT / START, 'ros2.main']
     ways = {'this': (ros2, ()), HALF_A_SECOND: (ros2, ('--spin-time', '0.5'))}
@@ -69,7 +68,7 @@ def main(calls: int, beside: Path | None) -> None:
 
 
 def answers(nodes: int) -> dict[str, str]:
-    """What each command prints if it has seen everything."""
+    """Return what each command prints if it has discovered everything."""
     own = [f'/topic_{n} [std_msgs/msg/String]' for n in range(nodes)]
     ros = [
         '/parameter_events [rcl_interfaces/msg/ParameterEvent]',
@@ -84,7 +83,7 @@ def answers(nodes: int) -> dict[str, str]:
 
 
 def run(command: list[str | Path]) -> tuple[float, str]:
-    """Run a process as in a bare shell; return its seconds, and what it prints."""
+    """Run a process as in a plain shell; return its seconds and its output."""
     environment = {name: value for name, value in os.environ.items() if name not in OF_A_LESSON}
     began = time.perf_counter()
     done = subprocess.run(

@@ -2,8 +2,8 @@
 
     .venv/bin/python tests/benchmarks/ros2_first_output.py [RUNS]
 
-Each run is a process of its own: there is no daemon to warm. Beside them, what of it is not ours:
-Python's start, and rclpy's import with the making of one node. Nothing is asserted.
+Each run is a new process, without a daemon. For comparison, it also times what is not ours: the
+start of Python, and importing rclpy and making one node. Nothing is asserted.
 """
 
 import os
@@ -41,8 +41,8 @@ def main(runs: int = 5) -> None:
 
 
 def first_line_sec(command: list[str | Path]) -> float:
-    """Seconds from the start of a process to its first line."""
-    # as in a terminal: the ROS wheels restart Python to set a library path, once in a session
+    """Return the seconds from the start of a process to its first line."""
+    # as in a new terminal: the ROS wheels then restart Python once, to set a library path
     ours = ('_ROS_WHEELS_BOOTSTRAP_COMPLETE', 'LD_LIBRARY_PATH', 'PYTHONDONTWRITEBYTECODE')
     environment = {name: value for name, value in os.environ.items() if name not in ours}
     began = time.perf_counter()

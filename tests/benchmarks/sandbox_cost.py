@@ -1,9 +1,9 @@
-"""What the sandbox costs: the same gradings with it and without, in turns, in one run.
+"""What the sandbox costs: the same gradings with and without it, alternately, in one run.
 
     .venv/bin/python tests/benchmarks/sandbox_cost.py [RUNS]
 
-In the sandbox kernels are forked from a process that has imported what they need; without one they
-are started. Nothing is asserted: look at the ratio, milliseconds are this machine's.
+In the sandbox, kernels are forked from a process with all imports; without it, they are started.
+Nothing is asserted: look at the ratio, because milliseconds depend on the machine.
 """
 
 import statistics
@@ -36,7 +36,7 @@ NAMES = (
 
 def main(runs: int = 5) -> None:
     """Print the table."""
-    require_isolation()  # what this finds out costs every run once, and no submission
+    require_isolation()  # its result is cached: without this, the first grading would include it
     course = Course(gradebook=Path(tempfile.mkdtemp(prefix='sandbox_cost-')))
     for assignment in course.assignments():
         register(course, assignment)
@@ -50,7 +50,7 @@ def main(runs: int = 5) -> None:
         )
         times: dict[bool, list[float]] = defaultdict(list)
         for run in range(runs):
-            # what comes second in a turn has warmer caches
+            # the second one in a round has warmer caches
             for sandboxed in (True, False) if run % 2 else (False, True):
                 module.require_isolation = lambda *, trust_students, answer=sandboxed: answer
                 began = time.perf_counter()

@@ -1,9 +1,9 @@
-"""How long a student waits: from a file in its place to the feedback on disk, with `serve`.
+"""How long a student waits with `serve`: from a complete file to the feedback on disk.
 
     .venv/bin/python tests/benchmarks/serve_latency.py [--students 20] [--rounds 1]
 
-Sample answers to lesson 3, right and wrong, are handed in as `nbgrader submit` does it: one after
-the other, then by 20 students spread over one minute. Prints p50, p95 and the slowest ones.
+Sample answers to lesson 3, right and wrong, are handed in as `nbgrader submit` does it: first one
+after another, then by 20 students within a minute. It prints p50, p95 and the slowest ones.
 """
 
 import argparse
@@ -22,11 +22,11 @@ from nbgrader.utils import notebook_hash
 LESSON = '03_publisher'
 SAMPLES = sorted((ROOT / 'tests/submissions').glob(f'{LESSON}-*.ipynb'))
 MOST_SEC = 600.0
-"""What has no feedback by then counts as lost."""
+"""A submission without feedback after so long counts as lost."""
 
 
 def main() -> None:
-    """Serve an empty gradebook, hand in, and print what it took."""
+    """Serve an empty gradebook, hand in, and print how long it took."""
     parser = argparse.ArgumentParser()
     parser.add_argument('--students', type=int, default=20)
     parser.add_argument('--answers', type=int, default=len(SAMPLES), help='only the first ones')
@@ -40,7 +40,7 @@ def main() -> None:
     for name in ('inbound', 'outbound', 'feedback'):
         (exchange / name).mkdir(parents=True)
     with serving(course_command(course, 'serve', exchange / 'inbound')):
-        took([put(exchange, SAMPLES[0], 'first')])  # the worker starts with it
+        took([put(exchange, SAMPLES[0], 'first')])  # starts the worker
         alone = [
             (sample.stem, *took([put(exchange, sample, f'alone{number}_{n}')]))
             for number in range(asked.rounds)
@@ -53,7 +53,7 @@ def main() -> None:
 
 
 def in_a_minute(exchange: Path, students: int) -> Iterator[tuple[str, float]]:
-    """Hand in for some students at moments of one minute; yield what each one took."""
+    """Hand in for some students at random times in a minute; yield the seconds of each one."""
     chance = random.Random(5)
     chosen = [chance.choice(SAMPLES) for _ in range(students)]
     began, pages = time.time(), []
@@ -66,7 +66,7 @@ def in_a_minute(exchange: Path, students: int) -> Iterator[tuple[str, float]]:
 
 
 def put(exchange: Path, sample: Path, student: str) -> tuple[Path, float]:
-    """Hand a sample in; return where its page will be, and when it was in its place."""
+    """Hand a sample in; return the path of its page, and the time when it was complete."""
     folder = exchange / 'inbound' / f'{student}+{LESSON}+2026-01-01 10:00:00.0 UTC+x'
     folder.mkdir()
     shutil.copy(sample, folder / f'{LESSON}.ipynb')
@@ -88,7 +88,7 @@ def took(pages: Sequence[tuple[Path, float]]) -> list[float]:
 
 
 def show(what: str, found: Sequence[tuple[str, float]]) -> None:
-    """Print how long it took: half of them, nearly all, and the slowest."""
+    """Print the median, the 95th percentile, and a table with the slowest first."""
     seconds = [each for _, each in found]
     twentieths = statistics.quantiles(seconds, n=20, method='inclusive')
     print(f'\n{what}: {len(found)}, p50 {twentieths[9]:.1f} s, p95 {twentieths[18]:.1f} s')
@@ -97,7 +97,7 @@ def show(what: str, found: Sequence[tuple[str, float]]) -> None:
 
 @contextmanager
 def serving(command: Sequence[str]) -> Iterator[None]:
-    """Have it run, and end it as systemd does."""
+    """Run the command, and end it as systemd does."""
     process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL)
     try:
         yield

@@ -2,8 +2,8 @@
 
     .venv/bin/python tests/benchmarks/sixty_seconds.py [RUNS]
 
-To meet a node takes DDS some time, once in each cell: it is told apart. The node runs in a
-process of its own, whose CPU time does not count; 300 of 300 messages are right. Nothing is
+Discovering a node takes DDS some time, once in each cell: it is printed separately. The node runs
+in a separate process, whose CPU time is not counted; 300 of 300 messages are right. Nothing is
 asserted.
 """
 
@@ -34,7 +34,7 @@ def main(runs: int = 5) -> None:
 
 
 def _minute() -> tuple[float, float, float]:
-    """Seconds to meet the node, to record a robot minute of it, and of CPU for both."""
+    """Return the seconds to discover the node, to record a minute of it, and of CPU for both."""
     cpu, began = time.process_time(), time.perf_counter()
     with Watcher(shared=True) as watcher:
         recorder = topic(TOPIC).listen(watcher)

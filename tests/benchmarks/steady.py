@@ -1,11 +1,11 @@
-"""The honest class, graded again and again on a busy machine: does every score stay the same?
+"""Grade an honest class again and again on a busy machine: does every score stay the same?
 
-A round is one right answer of each lesson; from round to round a lesson's right answers come in
-turn, so that every `-pass-` sample is graded, most of them several times. Each line tells of all
-rounds so far: a run that was cut short has said what it found.
+A round is one right answer of each lesson. A lesson's right answers take turns, so that every
+`-pass-` sample is graded, most of them several times. Each line counts all rounds so far, so the
+result of an interrupted run is known.
 
-For lessons that are named a round is all of their samples, the wrong ones, too: these have to fail
-for the reasons that they should.
+For named lessons, a round is all of their samples, including wrong ones: these have to fail for
+the expected reasons.
 """
 
 import os
@@ -32,12 +32,12 @@ LESSONS = len({assignment_of(PATHS[name]) for name in RIGHT})
 
 
 def honest_rounds(rounds: int) -> list[Paper]:
-    """Return the papers of so many rounds, one round after the other, each by another student."""
+    """Return the submissions of these rounds, one round after another, each by another student."""
     return synthetic_class(LESSONS * rounds, samples=RIGHT)
 
 
 def lesson_rounds(rounds: int, lessons: Sequence[str]) -> list[Paper]:
-    """Return the papers of so many rounds of all samples of these lessons, in the same way."""
+    """Return the submissions of these rounds of all samples of the lessons, in the same way."""
     samples = [name for name in PATHS if assignment_of(PATHS[name]) in lessons]
     by_sample = [synthetic_class(rounds, samples=[name]) for name in samples]
     in_turn = [paper for one_of_each in zip(*by_sample, strict=True) for paper in one_of_each]
@@ -55,9 +55,9 @@ def steady(
     lessons: Sequence[str] = (),
     loads: Sequence[str] = ('busy',),
 ) -> int:
-    """Grade so many rounds under these loads; return 1 where a score differs or is missing.
+    """Grade the rounds under these loads; return 1 if a score differs or is missing.
 
-    In a `folder` of a run that was ended, only what is missing there is graded.
+    If `folder` is the gradebook of an interrupted run, only what is missing in it is graded.
     """
     papers = lesson_rounds(rounds, lessons) if lessons else honest_rounds(rounds)
     size = len(papers) // rounds
@@ -81,14 +81,14 @@ def steady(
         watched = watch(
             course_command(course, 'grade', *options),
             done=ROW,
-            # memory is gone only when the run has counted it
+            # not before the first result, because the run first measures the available memory
             meanwhile={1: occupy} | {end: partial(progress.tell, end) for end in ends},
         )
     return progress.conclude(len(watched.done_at), watched.said.count('(unchanged)'))
 
 
 class _Progress:
-    """Counts what differs, round by round, and at the end once more in all that is stored."""
+    """Counts what differs after each round, and at the end once more in all stored results."""
 
     def __init__(self, course: Course, papers: Sequence[Paper], size: int) -> None:
         self._course, self._papers, self._size = course, papers, size
@@ -97,7 +97,7 @@ class _Progress:
         self._began = time.perf_counter()
 
     def tell(self, end: int, _: psutil.Process) -> None:
-        """Look at the round that ended with so many gradings, and print where it stands."""
+        """Check the round that ended with this grading, and print the counts so far."""
         found = _differences(self._course, self._papers[end - self._size : end])
         self._wrong += found
         self._loads.append(os.getloadavg()[0])
@@ -108,7 +108,7 @@ class _Progress:
         _show(found)
 
     def conclude(self, done: int, from_before: int) -> int:
-        """Compare all that is stored, and print the figure; return 1 where something differs."""
+        """Check all stored results, and print the counts; return 1 if something differs."""
         graded = self._papers[:done]
         self._wrong = _differences(self._course, graded)
         times = Counter(paper.sample for paper in graded)
@@ -135,7 +135,7 @@ class _Progress:
 
 
 def _differences(course: Course, papers: Sequence[Paper]) -> list[str]:
-    """Return a line for each score that is not what it should be, and for each such reason."""
+    """Return a line for each wrong score, and for each reason without an expected word."""
     wrong = wrong_scores(course, papers)
     for paper in papers:
         found = verdicts(course, paper.student_id, paper.assignment)

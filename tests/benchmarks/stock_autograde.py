@@ -1,9 +1,9 @@
-"""Run `nbgrader autograde` as it comes, in the sandbox of attacks_against_stock.py.
+"""Run stock `nbgrader autograde` in the sandbox of attacks_against_stock.py.
 
     stock_autograde.py COURSE ASSIGNMENT PORT
 
-Copies the course beside this file to COURSE, grades, and prints one line of JSON: the points by
-student, the attacker's graded notebooks, and what was left.
+It copies the course beside this file to COURSE, grades, and prints one line of JSON: the points by
+student, the attacker's graded notebooks, and what was left behind.
 """
 
 import json
@@ -20,7 +20,7 @@ LIMIT_SEC = 280
 
 
 def main(course: Path, assignment: str, port: int) -> None:
-    """Grade, and say what came of it."""
+    """Grade, and print the results."""
     shutil.copytree(Path(__file__).with_name('course'), course, symlinks=True)
     subprocess.run(['chmod', '-R', 'u+w', str(course)], check=True)
     with socket.create_server(('127.0.0.1', port)) as server:
@@ -51,7 +51,7 @@ def _processes() -> set[str]:
 
 
 def _points(course: Path, assignment: str) -> dict[str, float]:
-    """Return what the gradebook holds for each student whose notebook was graded."""
+    """Return the stored score of each student whose notebook was graded."""
     from nbgrader.api import Gradebook
 
     with Gradebook(f'sqlite:///{course}/gradebook.db') as gradebook:

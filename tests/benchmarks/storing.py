@@ -2,10 +2,10 @@
 
     .venv/bin/python tests/benchmarks/storing.py GRADEBOOK [--against FOLDER] [--rounds 3]
 
-GRADEBOOK is one that was graded, as class_of_500.py leaves it: its graded notebooks are stored
-into an empty one. FOLDER is an earlier commit's working copy with a .venv of its own: both store
-all of it by turns, so that they meet the same machine, and what they have stored is compared:
-scores, comments and notebooks. Ends with 1 where that differs.
+GRADEBOOK is a graded one, as class_of_500.py leaves it: its graded notebooks are stored into an
+empty one. FOLDER is the working copy of an earlier commit with its own .venv: both store all
+notebooks in turn, so that they run under the same conditions, and the stored scores, comments and
+notebooks are compared. The exit status is 1 if they differ.
 """
 
 import argparse
@@ -43,7 +43,7 @@ order by 1, 2, 3, 4
 
 
 def main(source: Path, against: Path | None, rounds: int) -> int:
-    """Print a row for each working copy; return 1 where what they have stored differs."""
+    """Print a row for each working copy; return 1 if what they have stored differs."""
     taken: dict[tuple[Path, str], list[tuple[float, float]]] = {}
     stored: set[str] = set()
     roots = [ROOT, *([against] if against else [])]
@@ -75,7 +75,7 @@ def _in_its_own_process(root: Path, source: Path) -> dict:
 
 
 def store_all(root: Path, source: Path) -> dict:
-    """Store all graded notebooks of a gradebook into an empty one, by a working copy's grader."""
+    """Store all graded notebooks of a gradebook into an empty one, with `root`'s grader."""
     sys.path[:0] = [str(root)]
     import nbformat
 

@@ -1,17 +1,17 @@
-"""Submissions a minute, beside stock nbgrader on the same files in the same run.
+"""Submissions per minute, compared with stock nbgrader on the same files in the same run.
 
     .venv/bin/python tests/benchmarks/throughput.py [--papers 24] [--runs 3] [--workers 1 2]
     .venv/bin/python tests/benchmarks/throughput.py --sizes 10 100 1000
     .venv/bin/python tests/benchmarks/throughput.py --hostile
 
-The files are the released lessons 2, 3, 4 and 7 with ordinary answers, right and wrong, filled
-in, demonstrations included; stock is `nbgrader autograde`, an assignment after the other, with
-none of this course's configuration but its folders. Both have an empty gradebook each time.
-`cold` counts a command from its start to its end, `warm` what comes between its submissions.
-N workers of ours get N cores, so that twice as many have twice as much; stock has all cores.
-`--sizes` asks whether one submission costs the same in a small class and in a large one.
-`--hostile` takes the other samples of these lessons, those that hang, die, cheat or are damaged.
-Nothing is asserted: look at the ratios, a minute is this machine's.
+The files are the released lessons 2, 3, 4 and 7 with ordinary answers, right and wrong, and with
+demonstrations. Stock is `nbgrader autograde`, one assignment after another, configured only with
+this course's folders. Both have an empty gradebook each time. `cold` counts a command from its
+start to its end, `warm` the time between its submissions. N workers of ours get N cores, so twice
+as many have twice as much; stock has all cores. `--sizes` shows whether a submission costs the
+same in a small class and in a large one. `--hostile` uses the other samples of these lessons,
+those that hang, die, cheat or are damaged. Nothing is asserted: look at the ratios, because rates
+depend on the machine.
 """
 
 import argparse
@@ -38,7 +38,7 @@ HOSTILE = (
     *('-zero-', 'infinite_loop', 'blocking_spin', 'os_exit', 'patches_', 'searches_'),
     *('deleted_', 'repeated_', 'split_', 'edited_', 'skip_'),
 )
-"""Parts of the names of samples that are no ordinary answers."""
+"""Parts of the names of samples that are not ordinary answers."""
 ROW = r'^student_\d+ '
 STOCK_CONFIG = """
 c = get_config()
@@ -48,7 +48,7 @@ c.CourseDirectory.release_directory = 'notebooks'
 
 
 def main() -> None:
-    """Print what was asked for."""
+    """Measure as the options say, and print the results."""
     parser = argparse.ArgumentParser()
     parser.add_argument('--papers', type=int, default=24)
     parser.add_argument('--runs', type=int, default=3)
@@ -82,7 +82,7 @@ def _one_of_each(samples: Sequence[str]) -> list[Paper]:
 
 
 def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> None:
-    """Print the rates of stock and of ours, in turns."""
+    """Print the rates of stock nbgrader and of ours, measured alternately."""
     shorter = [_without_demonstrations(paper) for paper in papers]
     ways = {
         'stock': partial(_stock, papers),
@@ -91,7 +91,7 @@ def _compare(papers: Sequence[Paper], *, workers: Sequence[int], runs: int) -> N
     }
     found: dict[str, list[dict]] = {name: [] for name in ways}
     for run in range(runs):
-        # the first one in a turn has colder caches
+        # the first one in a round has colder caches
         for name in reversed(ways) if run % 2 else ways:
             found[name].append(one := ways[name]())
             print(f'  run {run + 1}, {name}: {one["cold"]:.1f} a minute', flush=True)
@@ -141,7 +141,7 @@ def _ours(papers: Sequence[Paper], workers: int) -> dict:
 
 @contextmanager
 def _cores(number: int) -> Iterator[None]:
-    """Have no more than so many cores, with all that is started meanwhile."""
+    """Restrict this process, and all that it starts meanwhile, to this number of cores."""
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, sorted(before)[:number])
     try:
@@ -151,13 +151,13 @@ def _cores(number: int) -> Iterator[None]:
 
 
 def _stock(papers: Sequence[Paper]) -> dict:
-    """Grade papers as a course without this grader would."""
+    """Grade submissions with stock nbgrader, without this course's grader."""
     root = new_course('stock').gradebook
     lessons = sorted({paper.assignment for paper in papers})
     for lesson in lessons:
         shutil.copytree(ROOT / 'solutions' / lesson, root / 'solutions' / lesson)
     (root / 'nbgrader_config.py').write_text(STOCK_CONFIG, encoding='ascii')
-    course = Course(gradebook=root)  # its database lies where ours would
+    course = Course(gradebook=root)  # nbgrader's database is at the path of ours
     nbgrader = Path(sys.executable).with_name('nbgrader')
     for lesson in lessons:
         made = watch([nbgrader, 'generate_assignment', lesson], done='$^', cwd=root)
@@ -171,7 +171,7 @@ def _stock(papers: Sequence[Paper]) -> dict:
 
 
 def _found(course: Course, papers: Sequence[Paper], ran: Sequence[Watched]) -> dict:
-    """Return rates a minute, wrong scores, and MB; and clean up."""
+    """Return rates per minute, wrong scores, and peak MB; remove the course."""
     between = [later - one for each in ran for one, later in pairwise(_warm(each))]
     wrong = wrong_scores(course, papers)
     shutil.rmtree(course.gradebook.parent)
@@ -185,7 +185,7 @@ def _found(course: Course, papers: Sequence[Paper], ran: Sequence[Watched]) -> d
 
 
 def _warm(watched: Watched) -> list[float]:
-    """Return when submissions were done once all was under way."""
+    """Return when submissions were done, without the first quarter."""
     done = watched.done_at
     return done[len(done) // 4 :]
 
@@ -197,7 +197,7 @@ def _without_demonstrations(paper: Paper) -> Paper:
 
 
 def _sizes(sizes: Sequence[int], samples: Sequence[str]) -> None:
-    """Print what one submission costs in classes of these sizes."""
+    """Print the cost of one submission in classes of these sizes."""
     rows = []
     for size in sizes:
         course, papers = new_course('size'), synthetic_class(size, samples=samples)

@@ -22,11 +22,11 @@ from sample_class import package_of
 
 ENDLESS = 'while True: pass'
 BEGINS = re.compile(r'^( +)super\(\).__init__\(.*\)\n|^def \w+\(.*:\n( +)', re.MULTILINE)
-"""Where an answer's code begins to run: after this line of a constructor or a function."""
+"""Matches the line after which an answer's code runs: in a constructor or a function."""
 
 
 def main() -> None:
-    """Measure `./course validate`, its start included."""
+    """Measure `./course validate`, including its start."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('lessons', nargs='*', metavar='LESSON', default=[])
     parser.add_argument('--busy', type=int, default=0, help='busy loops beside it')
@@ -40,7 +40,7 @@ def main() -> None:
 
 
 def measured(lesson: str, *, samples: bool) -> Iterator[float]:
-    """Print and yield the seconds that each answer to a lesson takes."""
+    """Print and yield the seconds for each answer to a lesson."""
     with tempfile.TemporaryDirectory() as folder:
         for name, notebook in notebooks(lesson, Path(folder), samples=samples):
             began, used_sec = time.monotonic(), cpu_sec()
@@ -55,7 +55,7 @@ def measured(lesson: str, *, samples: bool) -> Iterator[float]:
 
 
 def notebooks(lesson: str, folder: Path, *, samples: bool) -> Iterator[tuple[str, Path]]:
-    """Yield answers to a lesson, by what is the matter with them."""
+    """Yield answers to a lesson, with a description of each."""
     right = {
         cell.id: cell.source
         for cell in read('solutions', lesson).cells
@@ -74,7 +74,7 @@ def notebooks(lesson: str, folder: Path, *, samples: bool) -> Iterator[tuple[str
 
 
 def endless_from_there(begins: re.Match[str]) -> str:
-    """Return the line where an answer's code begins, with what does not end."""
+    """Return the matched line, followed by an endless loop."""
     if begins[1]:
         return f'{begins[0]}{begins[1]}{ENDLESS}\n'
     return f'{begins[0]}{ENDLESS}\n{begins[2]}'
@@ -82,7 +82,7 @@ def endless_from_there(begins: re.Match[str]) -> str:
 
 @contextlib.contextmanager
 def busy_loops(number: int) -> Iterator[None]:
-    """Keep so many processors busy meanwhile."""
+    """Run this number of busy loops during the block."""
     loops = [subprocess.Popen([sys.executable, '-c', ENDLESS]) for _ in range(number)]
     try:
         yield
@@ -93,7 +93,7 @@ def busy_loops(number: int) -> Iterator[None]:
 
 
 def cpu_sec() -> float:
-    """How much of a processor all that was started here has used, kernels too."""
+    """Return the CPU seconds of all ended child processes, including kernels."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

@@ -1,9 +1,9 @@
-"""Which process uses the CPU while a submission is graded, and at what.
+"""Which processes use the CPU while a submission is graded, and in which part.
 
     .venv/bin/python tests/benchmarks/where_cpu_goes.py [RUNS]
 
-Means of some right and wrong sample answers, graded one after the other. What waits costs nothing
-here, so that a busy machine shows much the same. Nothing is asserted.
+It prints means over some right and wrong sample answers, graded one after another. Waiting is not
+counted, so a busy machine shows nearly the same. Nothing is asserted.
 """
 
 import asyncio
@@ -40,13 +40,13 @@ START, PROBE, REST = 'starts', 'probe', 'cells, and nodes meanwhile'
 TICKS = os.sysconf('SC_CLK_TCK')
 
 used: Counter[tuple[str, str]] = Counter()
-"""Seconds of CPU, by process and part."""
+"""Seconds of CPU time, by process and part."""
 before: dict[int, float] = {}
-"""What each kernel had used when it was looked at last, by its process ID."""
+"""The CPU seconds of each kernel at the last look, by process ID."""
 
 
 def note(kernel: GradingKernel, part: str) -> None:
-    """Count for a part what a kernel has used since it was looked at last."""
+    """Add the CPU time that a kernel has used since the last look to a part."""
     provisioner = kernel._manager.provisioner
     if not kernel._manager.has_kernel or not hasattr(provisioner.process, '_kernel'):
         return
@@ -54,7 +54,7 @@ def note(kernel: GradingKernel, part: str) -> None:
     try:
         pid = int(re.search(r'^Pid:\s+(-?\d+)', about.read_text('ascii'), re.MULTILINE)[1])
         fields = Path(f'/proc/{pid}/stat').read_text('utf-8').rpartition(')')[2].split()
-    except FileNotFoundError:  # it has ended
+    except FileNotFoundError:  # the kernel has ended
         return
     now = (int(fields[11]) + int(fields[12])) / TICKS
     used[f'{kernel.room} kernel', part] += now - before.get(pid, 0.0)
@@ -62,7 +62,7 @@ def note(kernel: GradingKernel, part: str) -> None:
 
 
 def watch(name: str, part_of: Callable[..., str], *, first: bool = False) -> None:
-    """Let a method of kernels note what they use in it, or `first` what they used before."""
+    """Patch a method of kernels to record CPU time that it used, or, with `first`, before it."""
     method = getattr(GradingKernel, name)
 
     async def noted(kernel: GradingKernel, *args: object, **kwargs: object) -> object:
@@ -77,7 +77,7 @@ def watch(name: str, part_of: Callable[..., str], *, first: bool = False) -> Non
 
 
 def grade(course: Course, name: str, number: int) -> None:
-    """Grade a sample as somebody's submission, and store it."""
+    """Grade a sample as a student's submission, and store it."""
     assignment, student = assignment_of(PATHS[name]), f'student_{number}'
     folder = course.folder('submitted', student, assignment)
     folder.mkdir(parents=True)
@@ -106,7 +106,7 @@ def main(runs: int = 3) -> None:
     watch('run', lambda code, *_: PROBE if 'probe' in code else REST)
     watch('stop', lambda *_: REST, first=True)
     with one_engine(course.db_url):
-        grade(course, NAMES[0], 0)  # starts the servers
+        grade(course, NAMES[0], 0)  # starts the fork servers
         used.clear()
         children, number = _of_children(), 0
         for number, name in enumerate(runs * NAMES, start=1):

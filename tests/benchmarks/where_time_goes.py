@@ -1,9 +1,10 @@
-"""Where the time of an exercise goes, part by part, with forked kernels and with started ones.
+"""How long each part of an exercise takes, with forked kernels and with started ones.
 
     .venv/bin/python tests/benchmarks/where_time_goes.py [RUNS]
 
-Medians over all exercises of some sample answers, judged one after the other in one run; what two
-rooms do side by side counts once, as the slower does it. Nothing is asserted.
+It prints medians over all exercises of some sample answers, judged one after another in one run. A
+part that two rooms do at the same time counts once, with the slower one's time. Nothing is
+asserted.
 """
 
 import statistics
@@ -54,16 +55,16 @@ WATCHED = {
     'open the rooms': (GradingRooms, '__aenter__'),
     'all of it': (judging, '_try_plans'),
 }
-"""Parts, and what is timed. The last three hold others in them."""
+"""Parts, and the methods that are timed. The last three include other parts."""
 PAIRED = ('build the room', 'fork the kernel', 'IPython starts', 'connect to it', 'start a kernel')
 
 spent: dict[str, list[float]] = defaultdict(list)
-"""How long each call of a part took in this exercise, in seconds."""
+"""The seconds that each call of a part took in this exercise."""
 exercises: list[dict[str, float]] = []
 
 
 def watch(part: str, owner: object, name: str) -> None:
-    """Let an asynchronous function also write down how long it takes."""
+    """Patch an asynchronous function to record how long it takes."""
     function: Callable[..., Awaitable] = getattr(owner, name)
 
     async def timed(*args: object, **kwargs: object) -> object:
@@ -79,7 +80,7 @@ def watch(part: str, owner: object, name: str) -> None:
 
 
 def parts() -> dict[str, float]:
-    """Return how long each part of the exercise took that has just ended, and forget it."""
+    """Return the seconds of each part of the exercise that has just ended, and forget them."""
     took = {part: sum(spent[part]) for part in WATCHED}
     for part in PAIRED:
         took[part] = sum(max(pair) for pair in zip(*[iter(spent[part])] * 2, strict=True))
@@ -92,7 +93,7 @@ def parts() -> dict[str, float]:
 
 
 def judge(course: Course) -> list[dict[str, float]]:
-    """Return the parts of each exercise of the samples, in seconds."""
+    """Return the seconds of each part, for each exercise of the samples."""
     exercises.clear()
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
@@ -106,13 +107,13 @@ def judge(course: Course) -> list[dict[str, float]]:
 
 def main(runs: int = 3) -> None:
     """Print the table."""
-    require_isolation()  # what this finds out costs every run once, and no submission
+    require_isolation()  # its result is cached: without this, the first grading would include it
     course = Course(gradebook=Path(tempfile.mkdtemp(prefix='where_time_goes-')))
     for assignment in course.assignments():
         register(course, assignment)
     for part, (owner, name) in WATCHED.items():
         watch(part, owner, name)
-    judge(course)  # starts the servers
+    judge(course)  # starts the fork servers
     forked, started = [], []
     for _ in range(runs):
         fork_servers._unfit.clear()
