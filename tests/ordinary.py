@@ -152,7 +152,7 @@ ORDINARY = {
     'test_checks_clock::test_a_node_is_alive_after_a_check_that_was_cut_short': (
         r'KeyboardInterrupt'
     ),
-    # the other installer, pip or uv, is tested where this environment was set up
+    # the setup of this environment was a test of pip or uv, too
     'test_course_setup::test_really_sets_up': r'uv',
     'test_ros2_streams::test_a_signal_at_any_moment_leaves_no_ghost': r'2',
     'test_dask_backend::test_a_worker_that_is_not_as_we_are_grades_nothing': r'environment0-.*',

@@ -1,7 +1,6 @@
 """Two hosts on one machine: network namespaces with a cable between them, and a TLS authority.
 
 A process in such a namespace has no other network. It needs root and Debian's package iproute2.
-iproute2.
 """
 
 import os

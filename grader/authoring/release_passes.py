@@ -2,7 +2,6 @@
 
 An answer is released as a stub, or as broken code that students are to fix. The broken lines are
 comments right after the answer, and replace the stub:
-of that stand as comments right behind the answer, and take the stub's place:
 
     ### BEGIN SOLUTION
     self.timer = self.create_timer(0.2, self.tick)

@@ -12,7 +12,7 @@ MAX_ID_CHARACTERS, MAX_ID_BYTES = 128, 200
 HTML = frozenset('<>"')
 """Characters that the formgrader's tables would show unescaped, in text and in attributes."""
 MOST_WORDS = 4
-"""For a name of at most so many words, all orders of the words written as one are compared."""
+"""Names with at most this many words are compared in all word orders, written as one word."""
 
 _UPLOADS = """
     notebooks submitted submissions submission inbound assignment assignments homework hw task

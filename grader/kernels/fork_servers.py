@@ -63,7 +63,7 @@ class RoomForkServer:
     def failure(self) -> NoForkedKernel:
         """Return why the server ended; call this when it has ended.
 
-        If it has never forked, another one would fail in the same way: none is started any more.
+        If it has never forked, another one would fail in the same way: no more are started.
         """
         problem = self._last_words()
         if not self._has_forked:

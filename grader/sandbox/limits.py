@@ -40,8 +40,8 @@ MOST_IN_FLIGHT_EACH = 5
 """The same, if processors are idle nevertheless. If processors are short, nodes follow the
 simulated clock too slowly, and are judged on the wall clock."""
 MOST_IN_FLIGHT = 60
-"""The most in all, unless there are more workers than that: each submission needs a ROS domain,
-and a machine has 101."""
+"""The most in all, unless IN_FLIGHT_EACH of each worker is more: each submission needs a ROS
+domain, and a machine has 101."""
 IDLE_SHARE, BUSY_SHARE = 0.5, 0.75
 """The share of time in which a process had to wait for a processor: below the first, more
 submissions are graded at a time, above the second fewer."""

@@ -84,7 +84,7 @@ def _no_namespaces() -> list[Instruction]:
 
 
 def _a_listener() -> list[Instruction]:
-    """Refuse a filter with a listener, which `signals` has set already: Linux takes only one."""
+    """Allow only a filter with a listener: `signals` sets that one, and Linux takes no second."""
     refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
     return [_argument(1), (_EQUAL, 1, 0, _NEW_LISTENER), refused, fine]
 

@@ -6,7 +6,6 @@ Each attack is handed in together with an honest neighbour, once to `./course gr
 `nbgrader autograde` with its defaults, in a temporary course. Stock nbgrader does not protect
 itself from student code. So all of it runs in one sandbox of ours, with its course, and is as
 unprotected in there as on a machine of its own.
-there as it is on a machine of its own.
 
 - points: the stored score, beside what honest work of that quality earns.
 - told: the attacker's outputs contain text of a hidden test.
