@@ -119,7 +119,7 @@ def _version_2(own: Path, top: Path | None) -> Path:
         raise NoCgroups(f'{own} is not ours to use: systemd has not delegated it')
     if not os.access(folder, os.W_OK | os.X_OK):
         raise NoCgroups(f'{folder} is not ours to use')
-    if folder == own and (folder / 'cgroup.type').exists():  # the top may have processes
+    if folder == own and (folder / 'cgroup.type').exists():  # the root may have processes
         _move_to_graders(folder)
     _switch_on(folder)
     return folder
