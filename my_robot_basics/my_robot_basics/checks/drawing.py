@@ -133,7 +133,7 @@ class Drawing:
             fail(
                 expected=wanted,
                 seen=f'one for ({strays[0].target.x:g}, {strays[0].target.y:g})',
-                hint='the parameter targets is x1, y1, x2, y2, … in m: put x, y into request.target',
+                hint='the parameter targets is x1, y1, x2, y2, … in m: copy both to the request',
                 cause=f'{SOLVE_IK} is asked for something else',
             )
         if not servers.was_asked(number):
