@@ -30,7 +30,7 @@ UNEVEN_PART = 0.25
 """How far most gaps may differ from the period, as a part of it: gaps that alternate between 0.1 s
 and 0.3 s are not 5 Hz."""
 AT_ONCE_SEC = 0.02
-"""Messages this close to each other count as sent at once: no exercise has a timer this fast."""
+"""Messages closer than this were sent at once: no exercise has a timer of a shorter period."""
 ONCE = 'publish one message each time the timer fires'
 FEWEST = 2
 """How many messages after the first one show whether they are evenly spaced."""
