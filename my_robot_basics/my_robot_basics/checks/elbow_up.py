@@ -65,11 +65,11 @@ def _why_wrong(server: Server, message: Any, asked: SolveIK.Request) -> str:
         return 'this is elbow_down: publish the angles of response.elbow_up'
     if _agree(seen, solve(asked).elbow_up):
         return 'publish the angles of the response, not a solution of your own'
-    why = joints.why_wrong(message, _degrees(response.elbow_up))
-    if why.startswith('these are degrees'):
+    if _agree(seen, _degrees(response.elbow_up)):
         return 'these are degrees: publish the angles of response.elbow_up as they are, in radians'
+    why = joints.why_wrong(message, _degrees(response.elbow_up))
     # the response is in radians: a client converts nothing
-    return AS_IT_IS if 'radians()' in why else why
+    return AS_IT_IS if joints.tells_to_convert(why) else why
 
 
 def expect_no_others(server: Server) -> None:

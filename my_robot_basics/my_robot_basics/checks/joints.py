@@ -141,6 +141,11 @@ def why_off(
     return next(iter(found), CONVERT_EACH if others_right else CONVERT)
 
 
+def tells_to_convert(advice: str) -> bool:
+    """Whether advice of `why_off` is to convert, which does not help if the angles are in rad."""
+    return 'radians()' in advice
+
+
 def _adds_to_others(position: Sequence[float], pose_deg: Sequence[float]) -> bool:
     """Whether other poses precede this one: neither zeros nor its own angles, in any unit."""
     right = [math.radians(angle) for angle in pose_deg]
