@@ -93,7 +93,7 @@ def test_a_clock_of_the_student_is_left_alone(run):
         (imported('no_stamp').NoStamp, 'saw a stamp of 0: set message.header.stamp'),
         (imported('one_stamp').OneStamp, 'saw a stamp that does not advance'),
         (imported('wall_stamp').WallStamp, "saw the computer's clock: set message.header.stamp"),
-        (imported('wrong_names').WrongNames, 'saw joint_1, joint_2'),
+        (imported('wrong_names').WrongNames, "saw 'joint_1', 'joint_2'"),
     ],
 )
 def test_a_wrong_message_fails(run, node_class, reason):
