@@ -32,6 +32,11 @@ class Degrees(IKClient):
         super().send([57.29577951308232 * angle for angle in position])
 
 
+class Rounds(IKClient):
+    def send(self, position):
+        super().send([round(angle, 2) for angle in position])
+
+
 class AsksForAnother(IKClient):
     def ask(self, target):
         super().ask(Point(x=target.y, y=target.x))
@@ -51,6 +56,7 @@ WRONG = [
     (ForwardsNothing, 'saw none in 1.5 s: publish when the answer is there'),
     (ElbowDown, 'this is elbow_down: publish the angles of response.elbow_up'),
     (Degrees, 'these are degrees: publish the angles of response.elbow_up as they are'),
+    (Rounds, 'publish the angles of response.elbow_up as they are: they are in radians'),
     (AsksForAnother, 'a request to /solve_ik for the message on /target_point, saw arm_interf'),
     (AsksNobody, 'saw none in 1.5 s: call self.client.call_async'),
     (RaisesInAnswer, "saw none in 1.5 s: its callback raised AttributeError.*'elbow'"),
