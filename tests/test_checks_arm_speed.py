@@ -103,6 +103,22 @@ def test_more_are_wrong_though_the_end_comes_within_a_step(off):
         judge(2.4 / (1.0 + off), speed=0.5, reported=told)
 
 
+@pytest.mark.parametrize('is_right', [True, False])
+def test_first_messages_that_come_a_step_late_ask_for_finer_steps(monkeypatch, is_right):
+    monkeypatch.setattr(arm_speed, '_is_right_in_finer_steps', lambda *_: is_right)
+    half = reports(BRIEF, seconds=BRIEF_SEC / 2)
+    late = [(at + 0.05 * (step < len(half) / 2), q) for step, (at, q) in enumerate(half)]
+    fast = pytest.raises(CheckFailed, match=r'saw 1\.5 s: in each step')
+    with contextlib.nullcontext() if is_right else fast:
+        judge(BRIEF_SEC, speed=BRIEF, reported=late)
+
+
+def test_no_second_look_lets_a_move_pass_that_ends_too_soon(monkeypatch):
+    monkeypatch.setattr(arm_speed, '_is_right_in_finer_steps', lambda *_: True)
+    with pytest.raises(CheckFailed, match=r'expected 60\.0 s'):
+        judge(58.0)
+
+
 @pytest.mark.parametrize('off', [-0.04, 0.04, 0.1])
 @pytest.mark.parametrize('late_sec', [(0.0002, 0.0), BUSY])
 def test_three_percent_are_told_on_the_wall_clock(off, late_sec):

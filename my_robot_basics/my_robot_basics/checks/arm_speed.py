@@ -23,8 +23,9 @@ PLAUSIBLE = 0.8, 1.25
 """If the feedback's speed is outside these parts of the requested one, the feedback is wrong, and
 only the time of the move counts."""
 FINEST = 0.0005, 0.45
-"""The step of the clock and the time of the move, in seconds, of a second look: a server whose
-sleep is not a multiple of the clock's step sleeps too long, but less so with finer steps."""
+"""The step of the clock and the time of the move, in seconds, of a second look. A server whose
+sleep is not a multiple of the clock's step sleeps too long, but less so with finer steps. If the
+first messages come one step late, and the others do not, the feedback shows too high a speed."""
 FINER = 0.002, 4.0
 """The same with a longer move, if too little feedback comes in the time of FINEST."""
 SLOW_PART = 0.5
@@ -61,8 +62,8 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     doubt = CheckFailed if is_proven else arm.doubt()
     if is_in_time:
         seconds = wanted_sec * sent.goal.speed / told.rad_per_sec
-    is_slow = wanted_sec < seconds
-    if is_slow and arm.time.is_driven and _is_right_in_finer_steps(arm, sent, position):
+    may_be_right = wanted_sec < seconds or is_in_time
+    if may_be_right and arm.time.is_driven and _is_right_in_finer_steps(arm, sent, position):
         return
     _fail_speed(arm, sent, position, seconds=seconds, wanted_sec=wanted_sec, doubt=doubt)
 
