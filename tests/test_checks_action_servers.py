@@ -10,6 +10,7 @@ from my_robot_basics.checks import CheckFailed, action_server, replies, served_a
 from nodes.running import STOPS, imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
+from sensor_msgs.msg import JointState
 
 from arm_interfaces.action import MoveArm
 
@@ -138,6 +139,24 @@ def test_an_obstacle_from_before_is_dealt_with_before_the_next_goal(run, monkeyp
     with action_server('/move_arm', MoveArm, **ENDS) as server:
         replies.expect_no_cancel(server, (-0.3, 0.9))
     assert happened[:3] == ['say_obstacle', 'answers_parameters', 'publish']
+
+
+class SendsAnEarlierGoalLate(MoveArmClient):
+    """Sends with the first pose a goal that a server missed, as one does that waited for it."""
+
+    has_sent = False
+
+    def send(self, pose):
+        if not self.has_sent:
+            self.has_sent = True
+            super().send(JointState(position=[0.1, 0.1]))
+        super().send(pose)
+
+
+def test_the_outcome_of_an_earlier_goal_may_come_late(run):
+    run(SendsAnEarlierGoalLate)
+    with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_outcomes(server, aborted=(1.2, -0.6))
 
 
 @pytest.mark.slow

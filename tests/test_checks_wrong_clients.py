@@ -113,7 +113,7 @@ class AnswersAnything(IKClient):
 @pytest.mark.usefixtures('impatient')
 def test_who_publishes_no_angles_is_told(run):
     run(AnswersAnything)
-    with pytest.raises(CheckFailed, match=r'no message on /kin.*: publish only where response.re'):
+    with pytest.raises(CheckFailed, match=r'no message on /kin.*: publish only if response.re'):
         check_asks()
 
 

@@ -82,6 +82,10 @@ class ScriptedActionServer:
         self._timer = self._node.create_timer(REPORT_SEC, self._report)
         self.starts += 1
 
+    def count_over(self) -> int:
+        """How many goals have ended or were rejected: their outcomes may come late."""
+        return sum(goal.end.done() or not goal.is_accepted for goal in self.goals)
+
     def is_there(self) -> bool:
         """Whether the action server exists."""
         return self._server is not None
