@@ -81,6 +81,27 @@ def test_what_each_kernel_needs_has_been_imported_once(loop, room, package):
     assert set(imported) <= _held_by_a_server(room)
 
 
+def test_a_server_keeps_what_it_compiles_and_its_kernels_do_not(
+    loop, monkeypatch, tmp_path, no_servers
+):
+    program = Path(
+        shutil.copytree(
+            fork_servers._PROGRAM,
+            tmp_path / 'forkserver',
+            ignore=shutil.ignore_patterns('__pycache__'),
+        )
+    )
+    monkeypatch.setattr(fork_servers, '_PROGRAM', program)
+    sandbox, kernel = loop.run(opened())
+    try:
+        assert kernel.why_not_forked == ''
+        compiled = {path.name.partition('.')[0] for path in program.glob('__pycache__/*.pyc')}
+        assert compiled == {path.stem for path in program.glob('*.py')}
+        assert printed(loop, kernel, 'import sys; print(sys.dont_write_bytecode)') == 'True\n'
+    finally:
+        loop.run(closed(sandbox, kernel))
+
+
 def _held_by_a_server(room):
     code = """
 import json, sys

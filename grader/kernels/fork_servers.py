@@ -159,5 +159,10 @@ def _sealed_copy(path: Path) -> IO[bytes]:
 
 
 def _environment() -> dict[str, str]:
-    """Return a server's environment: that of its kernels, without what only a room provides."""
-    return passed_on() | ENVIRONMENT | {'MPLCONFIGDIR': font_cache()}
+    """Return a server's environment: that of its kernels, without what only a room provides.
+
+    It may write bytecode, as no kernel may: otherwise, each server would compile those modules of
+    the course again that nothing else imports.
+    """
+    own = {'MPLCONFIGDIR': font_cache(), 'PYTHONDONTWRITEBYTECODE': ''}
+    return passed_on() | ENVIRONMENT | own

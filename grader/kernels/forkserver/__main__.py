@@ -36,6 +36,7 @@ def main(control: socket.socket, room: str) -> None:
     except Exception as error:
         control.send(f'{type(error).__name__}: {error}'[:2000].encode())
         os._exit(1)  # a normal exit would wait for threads, and a thread may be the problem
+    sys.dont_write_bytecode = True  # from here on, what is imported may be the student's
     gc.freeze()  # or a garbage collection in a kernel would copy all of this memory
     gc.enable()
     # Linux reaps ended processes itself; only a kernel's parent waits, for its kernel alone
