@@ -1,11 +1,11 @@
-"""Started by `./course` as `python -IS launcher`: see launcher/main.py."""
+"""Started by `./course` as `python -IS launcher/__main__.py`: see launcher/main.py."""
 
 import os
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 # after the standard library: a file in the course's folder must not replace a module of it
-sys.path[:] = [*sys.path[1:], ROOT]
+sys.path.append(ROOT)
 
 if sys.argv[1:] == ['--is-set-up']:
     from launcher.made import is_set_up  # every call runs this, so it imports nothing else

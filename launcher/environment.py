@@ -1,8 +1,16 @@
-"""The paths of the course and its `.venv`, and the environment variables for what runs in it."""
+"""The paths of the course and its `.venv`, and the environment variables for what runs in it.
+
+Each `./course VERB` reads them, and pathlib takes longer to import than all the rest: so the
+variables are made of paths as text, and a Path is made for who asks for one.
+"""
 
 import os
-from collections.abc import Mapping
-from pathlib import Path
+import sys
+
+TYPE_CHECKING = False  # typing's own: to import that takes as long as pathlib
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
 
 FOREIGN: tuple[str, ...] = (
     'PYTHONPATH',
@@ -34,17 +42,25 @@ PREFIXES = ('AMENT_PREFIX_PATH', 'COLCON_PREFIX_PATH', 'CMAKE_PREFIX_PATH')
 class Environment:
     """A checkout of the course, or a student's bundle, with its `.venv`."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: 'str | Path') -> None:
         """Take the root folder."""
-        self.root = root
+        self.folder = str(root)
+        """Its path as text."""
 
     @property
-    def venv(self) -> Path:
+    def root(self) -> 'Path':
+        """The root folder."""
+        from pathlib import Path
+
+        return Path(self.folder)
+
+    @property
+    def venv(self) -> 'Path':
         """The virtual environment in which everything is installed."""
         return self.root / '.venv'
 
     @property
-    def python(self) -> Path:
+    def python(self) -> 'Path':
         """The Python that runs the verbs."""
         return self.venv / 'bin/python'
 
@@ -53,9 +69,9 @@ class Environment:
         """Whether this is the whole course: a bundle has no grader."""
         return (self.root / 'grader').is_dir()
 
-    def outside(self, variables: Mapping[str, str]) -> dict[str, str]:
+    def outside(self, variables: 'Mapping[str, str]') -> dict[str, str]:
         """Return the caller's variables without those of other environments, for installers."""
-        foreign = {str(self.venv), '/opt/ros'}
+        foreign = {f'{self.folder}/.venv', '/opt/ros'}
         for name in PREFIXES:
             foreign.update(filter(None, variables.get(name, '').split(os.pathsep)))
         kept = {name: value for name, value in variables.items() if name not in FOREIGN}
@@ -65,21 +81,21 @@ class Environment:
             del kept['LD_LIBRARY_PATH']
         return kept
 
-    def variables(self, variables: Mapping[str, str]) -> dict[str, str]:
+    def variables(self, variables: 'Mapping[str, str]') -> dict[str, str]:
         """Return the environment variables for a verb."""
-        inside = self.outside(variables)
+        inside, venv = self.outside(variables), f'{self.folder}/.venv'
         inside |= {
-            'VIRTUAL_ENV': str(self.venv),
-            'PATH': os.pathsep.join(filter(None, [str(self.venv / 'bin'), inside['PATH']])),
-            'AMENT_PREFIX_PATH': str(self.venv),
+            'VIRTUAL_ENV': venv,
+            'PATH': os.pathsep.join(filter(None, [f'{venv}/bin', inside['PATH']])),
+            'AMENT_PREFIX_PATH': venv,
             'RCUTILS_LOGGING_USE_STDOUT': '1',
             'RCUTILS_COLORIZED_OUTPUT': '0',
             # a kernelspec python3 in the user's home must not replace ours
             'JUPYTER_PREFER_ENV_PATH': '1',
             # ROS tutorials use this name, too, for the user's own workspace
-            'ROS_WS': variables.get('MY_ROBOT_BASICS_WORKSPACE') or str(self.root / 'ros_ws'),
+            'ROS_WS': variables.get('MY_ROBOT_BASICS_WORKSPACE') or f'{self.folder}/ros_ws',
         }
-        if ' ' in str(self.venv):
+        if ' ' in venv:
             # colcon's setup.bash fails if its Python's path has a space; it works with any Python
             inside['COLCON_PYTHON_EXECUTABLE'] = str(self.python.resolve())
         return inside
@@ -89,7 +105,26 @@ def without_foreign(folders: str, foreign: set[str]) -> str:
     """Return a list of folders without those inside a foreign prefix."""
     kept = []
     for folder in filter(None, folders.split(os.pathsep)):
-        above = {folder, folder.rstrip('/'), *map(str, Path(folder).parents)}
-        if not above & foreign:
+        above = [folder, folder.rstrip('/')]
+        while above[-1] not in ('', '/'):
+            above.append(os.path.dirname(above[-1]))
+        if not foreign.intersection(above):
             kept.append(folder)
     return os.pathsep.join(kept)
+
+
+def ros_libraries(venv: str, variables: 'Mapping[str, str]') -> dict[str, str]:
+    """Return the variables that ROS's wheels would otherwise start a verb's Python again to set.
+
+    They are for the Python of `.venv` that runs this: its version is in the path. The folders have
+    a fixed order, as `session/sourced.py` gives them; the wheels take them from a set.
+    """
+    packages = '{}/lib/python{}.{}/site-packages'.format(venv, *sys.version_info)
+    names = sorted(os.listdir(packages))
+    libraries = [name for name in names if name.startswith('ros_') and name.endswith('.libs')]
+    folders = [f'{venv}/lib', *(os.path.realpath(f'{packages}/{name}') for name in libraries)]
+    folders += filter(None, variables.get('LD_LIBRARY_PATH', '').split(os.pathsep))
+    return {
+        'LD_LIBRARY_PATH': os.pathsep.join(folders),
+        '_ROS_WHEELS_BOOTSTRAP_COMPLETE': '1',
+    }

@@ -2,13 +2,12 @@
 
 import os
 import sys
-from pathlib import Path
 
-from launcher.environment import Environment
+from launcher.environment import Environment, ros_libraries
 from launcher.messages import LauncherError, say
 from launcher.verbs import Verb, read_verbs
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 READY = '--ready'
 """Given instead of a Python if nothing has to be set up: `course` has just checked that."""
 
@@ -22,6 +21,8 @@ def main(arguments: list[str]) -> int:
     python, name, *rest = arguments
     try:
         if python != READY:
+            from pathlib import Path
+
             from launcher.set_up import set_up  # imports the installers, which are rarely needed
 
             set_up(environment, Path(python))
@@ -45,12 +46,15 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     else:
         variables.pop('COURSE_LANGUAGE', None)  # set in a terminal; grading is always in English
     if verb.folder == 'root':
-        os.chdir(environment.root)
-        variables['PWD'] = str(environment.root)
+        os.chdir(environment.folder)
+        variables['PWD'] = environment.folder
     if verb.runs.startswith('launcher.'):
         import importlib
 
         return importlib.import_module(verb.runs).run(environment, variables, arguments)
-    command = [str(environment.python), '-P', '-m', *verb.runs.split(), *arguments]
+    command = [f'{environment.folder}/.venv/bin/python', '-P', '-m', *verb.runs.split()]
+    command += arguments
+    if sys.executable == command[0]:  # this process is that Python
+        variables |= ros_libraries(f'{environment.folder}/.venv', variables)
     sys.stdout.flush()
     os.execve(command[0], command, variables)

@@ -1,8 +1,8 @@
 """The table of the verbs; `course` reads the same file for `--help`."""
 
-from pathlib import Path
+import os
 
-TABLE = Path(__file__).with_name('verbs.txt')
+TABLE = os.path.join(os.path.dirname(__file__), 'verbs.txt')
 
 
 class Verb:
@@ -21,13 +21,15 @@ class Verb:
         """Its help, in one line."""
 
 
-def read_verbs(table: Path = TABLE) -> dict[str, Verb]:
+def read_verbs(table: str | os.PathLike[str] = TABLE) -> dict[str, Verb]:
     """Return the verbs by name, in the order of the table.
 
     Raises ValueError if a row does not have the form that the table's first lines describe.
     """
     verbs = {}
-    for line in table.read_text(encoding='utf-8').splitlines():
+    with open(table, encoding='utf-8') as file:
+        lines = file.read().splitlines()
+    for line in lines:
         owner, runs, folder, text = line.split('|', 3) if line[:1] not in '#' else [''] * 4
         if not owner:
             continue

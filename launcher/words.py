@@ -1,19 +1,20 @@
 """Translate messages of `./course`, before any package is installed that reads catalogues."""
 
 import os
-import re
-from functools import cache
-from pathlib import Path
 
 VARIABLE = 'COURSE_WORDS'
 """The catalogue's path, locale/*/LC_MESSAGES/launcher.po, set by `course`; '' is English."""
-_ENTRY = re.compile(r'^((?:#.*\n)*)msgid ((?:".*"\n)+)msgstr ((?:".*"\n?)+)', re.MULTILINE)
+_ENTRY = r'(?m)^((?:#.*\n)*)msgid ((?:".*"\n)+)msgstr ((?:".*"\n?)+)'
+_known: dict[str, dict[str, str]] = {}
+"""The translations of each catalogue that was read."""
 
 
 def put(template: str, **values: object) -> str:
     """Return a sentence in the user's language, with its placeholders filled in."""
-    known = _read(os.environ.get(VARIABLE, ''))
-    text = known.get(template, template)
+    catalogue = os.environ.get(VARIABLE, '')
+    if catalogue and catalogue not in _known:
+        _known[catalogue] = _read(catalogue)
+    text = _known.get(catalogue, {}).get(template, template)
     return text.format(**values) if values else text
 
 
@@ -22,14 +23,17 @@ def marked(sentence: str) -> str:
     return sentence
 
 
-@cache
 def _read(catalogue: str) -> dict[str, str]:
     """Return the translations that are not fuzzy; none if there is no such file."""
-    if not catalogue or not Path(catalogue).is_file():
+    import re  # only needed if the language is not English
+
+    if not os.path.isfile(catalogue):
         return {}
+    with open(catalogue, encoding='utf-8') as file:
+        entries = re.findall(_ENTRY, file.read())
     return {
         _text(english): _text(other)
-        for about, english, other in _ENTRY.findall(Path(catalogue).read_text(encoding='utf-8'))
+        for about, english, other in entries
         if _text(other) and not _is_fuzzy(about)
     }
 

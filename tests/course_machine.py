@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[1]
 TOOLS = ['sh', 'cat', 'chmod', 'cp', 'dirname', 'env', 'mkdir', 'readlink', 'sleep', 'uname']
 PYTHON = (
     f"""\
-case $* in '-IS '*/launcher' '*) exec {shlex.quote(sys._base_executable)} "$@" ;; esac
+case $* in '-IS '*/launcher/__main__.py' '*) exec {shlex.quote(sys._base_executable)} "$@" ;; esac
 """
     """\
 echo "python $*" >>"$CALLS"

@@ -1,5 +1,6 @@
 """What `./course` does before anything is installed: its verbs, the environment, the installer."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -7,11 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
+import ros_wheels_bootstrapper
 
 from grader.cli.arguments import make_parser
 from grader.course import ROOT
 from launcher.environment import Environment, without_foreign
 from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
+from launcher.main import run_verb
 from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.shares import executables_of
 from launcher.verbs import read_verbs
@@ -85,6 +88,31 @@ def test_what_the_caller_asked_of_his_workspace_stays():
     assert inside['ROS_WS'] == '/mine'
     assert inside['PATH'] == '/course/.venv/bin:/bin'
     assert 'COLCON_PYTHON_EXECUTABLE' not in inside
+
+
+def test_a_verb_gets_the_libraries_of_ros_and_starts_once(monkeypatch):
+    monkeypatch.setenv('LD_LIBRARY_PATH', '/usr/local/cuda/lib64')
+    run = []
+    monkeypatch.setattr(os, 'execve', lambda *arguments: run.append(arguments))
+    monkeypatch.setattr(sys, 'executable', f'{ROOT}/.venv/bin/python')
+    monkeypatch.chdir(ROOT)  # run_verb changes it
+    run_verb(Environment(ROOT), read_verbs()['due'], [])
+    ((python, command, variables),) = run
+    assert python == command[0] == sys.executable
+    assert variables['_ROS_WHEELS_BOOTSTRAP_COMPLETE'] == '1'
+    folders = variables['LD_LIBRARY_PATH'].split(':')
+    assert folders[-1] == '/usr/local/cuda/lib64'
+    assert sorted(folders) == sorted(ros_wheels_bootstrapper.get_ros_paths().split(':'))
+
+
+def test_a_new_venv_s_python_looks_for_the_libraries_itself(monkeypatch):
+    run = []
+    monkeypatch.setattr(os, 'execve', lambda *arguments: run.append(arguments))
+    # the launcher's Python, which may have another version than that of .venv
+    monkeypatch.setattr(sys, 'executable', '/usr/bin/python3')
+    monkeypatch.chdir(ROOT)
+    run_verb(Environment(ROOT), read_verbs()['due'], [])
+    assert '_ROS_WHEELS_BOOTSTRAP_COMPLETE' not in run[0][2]
 
 
 @pytest.mark.parametrize(
