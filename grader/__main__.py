@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.cli.arguments import make_parser
-from grader.cli.stopping import stoppable
+from grader.cli.stopping import PIPE_CLOSED, is_output_closed, stoppable
 from grader.common.db_url import refuse_another_place
 from grader.common.errors import CourseError
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) -> int:
     """Run one command; return its exit status: 0, 1 if something needs attention, 130 on Ctrl-C.
 
-    It is 143 on SIGTERM and 129 on SIGHUP, which end a run in the same way.
+    It is 143 on SIGTERM, 129 on SIGHUP, and 141 if nothing reads the output any more: these end a
+    run in the same way.
     """
     asked = make_parser().parse_args(arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
@@ -54,6 +55,15 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
             with contextlib.suppress(OSError):  # SIGHUP: the terminal is gone
                 print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)
             return stop.status
+        except BrokenPipeError:
+            if not is_output_closed():
+                raise
+            print(
+                'course: stopped, because nothing reads the output any more. What was finished is '
+                'kept; run it again to go on.',
+                file=sys.stderr,
+            )
+            return PIPE_CLOSED
 
 
 def _refuse_no_folder(course: 'Course') -> None:

@@ -246,6 +246,22 @@ sys.stdin.read()
         process.communicate('')
 
 
+def test_a_reader_that_leaves_ends_a_command_with_a_sentence(tmp_path):
+    reader, writer = os.pipe()
+    os.close(reader)
+    course = make_course(tmp_path)
+    program = 'import sys; from pathlib import Path; from grader.__main__ import main; '
+    program += 'from grader.course import Course; '
+    program += f'sys.exit(main(["due"], course=Course(Path({str(course.root)!r}))))'
+    ran = subprocess.run([sys.executable, '-c', program], stdout=writer, stderr=subprocess.PIPE)
+    os.close(writer)
+    assert ran.stderr.decode() == (
+        'course: stopped, because nothing reads the output any more. What was finished is kept; '
+        'run it again to go on.\n'
+    )
+    assert ran.returncode == 141
+
+
 def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
     hold = (
         'import sys, time\n'

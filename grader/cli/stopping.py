@@ -1,11 +1,28 @@
-"""Handle SIGTERM and SIGHUP like Ctrl-C."""
+"""Handle SIGTERM and SIGHUP like Ctrl-C, and a reader of stdout that is gone like SIGPIPE."""
 
+import os
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
 _SIGNALS = (signal.SIGTERM, signal.SIGHUP)
+
+
+PIPE_CLOSED = 128 + signal.SIGPIPE
+"""The exit status of a process that SIGPIPE ended; Python ignores this signal."""
+
+
+def is_output_closed() -> bool:
+    """Whether nothing reads stdout any more; if so, what is still in its buffer is discarded."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # flushing the buffer at exit would raise again
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return True
+    return False
 
 
 class Stop:
