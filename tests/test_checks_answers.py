@@ -78,3 +78,25 @@ def test_a_form_that_other_lines_have_too_tells_nothing():
 )
 def test_zeros_alone_stand_for_angles(text, stands_for_them):
     assert answers.stands_for_angles([], text) is stands_for_them
+
+
+@pytest.mark.parametrize(
+    ('texts', 'are_branches'),
+    [
+        (['near: 47.46 -5.17 or 42.54 5.17'], True),
+        (["{'elbow_up': (407.46, -5.17), 'elbow_down': (42.54, 5.17)}"], True),
+        (['up 47.46 −5.17', 'down 42.54 5.17'], True),
+        (['up 48.46 -5.17', 'down 42.54 5.17'], False),
+        (['up 47.46 -5.17'], False),
+        (['bearing 45.00, from 0.20 m to 1.80 m'], False),
+        (['within -1.80 and 1.80 m of 45.00'], False),
+        (['45 1', '45 -1'], False),
+    ],
+)
+def test_both_branches_of_a_point_mirror_each_other_in_its_bearing(texts, are_branches):
+    assert answers.hold_both_branches([45.0, 225.0], texts) is are_branches
+
+
+def test_a_flood_of_numbers_is_not_compared_pair_by_pair():
+    texts = [f'{number}.5 1.5' for number in range(50_000)]
+    assert not answers.hold_both_branches([0.0], texts)

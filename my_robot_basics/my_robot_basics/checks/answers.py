@@ -16,6 +16,10 @@ _DECIMAL_COMMA = re.compile(r'(?<=\d),(?=\d)')
 _HYPHEN = re.compile(r'(?<=\w)[-−](?=[-−+]?\d)')
 """A hyphen between a name and its number, as in theta1-65.92."""
 _WITH_DECIMALS = re.compile(r'\d+\.\d+')
+MOST_PAIRS = 200
+"""How many pairs of numbers `hold_both_branches` compares with each other at most."""
+MIRRORED_DEG = 0.02
+"""How far the sum of two logged angles may be from twice the bearing: each is rounded."""
 _ELBOWS_DEG = (0.0, 180.0)
 """θ2 of a stretched and of a folded arm, which a node may compute for a target out of reach."""
 
@@ -75,6 +79,23 @@ def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
     return ''
 
 
+def hold_both_branches(bearings_deg: Sequence[float], texts: Iterable[str]) -> bool:
+    """Whether texts hold both branches of a point that is in the direction of a bearing.
+
+    A node may compute them for the nearest point in reach. The branches of any point mirror each
+    other in its bearing: the angles θ2 differ in sign, and the mean of the angles θ1 is the
+    bearing.
+    """
+    pairs = {each for text in texts for each in itertools.pairwise(numbers_with_decimals(text))}
+    return any(
+        theta2 == -other2 != 0.0
+        and any(angles.near(2 * each, theta1 + other1, MIRRORED_DEG) for each in bearings_deg)
+        for (theta1, theta2), (other1, other2) in itertools.combinations(
+            sorted(pairs)[:MOST_PAIRS], 2
+        )
+    )
+
+
 def form_of(text: str) -> str:
     """A text with # for each number, which alone differs from target to target."""
     return _NUMBER.sub('#', text)
@@ -94,14 +115,25 @@ def stands_for_angles(bearings_deg: Iterable[float], text: str) -> bool:
     return (len(found) > 1 and not any(found)) or has_stretched(bearings_deg, text)
 
 
+def stand_for_angles(bearings_deg: Sequence[float], texts: Sequence[str]) -> bool:
+    """Whether a text stands for angles, or some texts hold both branches of another point."""
+    return hold_both_branches(bearings_deg, texts) or any(
+        stands_for_angles(bearings_deg, text) for text in texts
+    )
+
+
+def numbers_with_decimals(text: str) -> list[float]:
+    """The numbers in a text that are written with decimals: a 0 without may count something."""
+    found = [number for _, number in _NUMBER.findall(text) if '.' in number]
+    return [float(number.replace('−', '-')) for number in found]
+
+
 def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:
     """Whether a text holds a bearing as θ1, next to the θ2 of a stretched or folded arm.
 
     A bearing alone does not count: a node that logs each target may log its bearing, too.
     """
-    # a 0 without decimals is not an angle: it may count something
-    found = [number for _, number in _NUMBER.findall(text) if '.' in number]
-    numbers = [float(number.replace('−', '-')) for number in found]
+    numbers = numbers_with_decimals(text)
     beside = [*itertools.pairwise(numbers), *zip(numbers[1:], numbers, strict=False)]
     return any(
         angles.near(bearing, theta1_deg) and any(angles.near(e, theta2_deg) for e in _ELBOWS_DEG)

@@ -117,9 +117,10 @@ class Log(NodeLog):
         """Expect at least one WARN record, and no INFO record with angles.
 
         A record has angles if it looks like those with angles of a target in reach, with other
-        numbers; after the warning, also with the same angles. Zeros count, too, and one of
-        `no_angles` beside the θ2 of a stretched or folded arm, unless such a record came beside
-        the angles of a target in reach. Raises CheckFailed after `free_sec` of free time.
+        numbers; after the warning, also with the same angles. Unless records of that form
+        came beside the angles of a target in reach, zeros count, too, as do one of `no_angles`
+        beside the θ2 of a stretched or folded arm, and both branches of a point in that direction.
+        Raises CheckFailed after `free_sec` of free time.
         """
         bearings = list(no_angles)
         if not self.wait_for_answer(lambda log: log.has('WARN'), free_sec=free_sec):
@@ -135,9 +136,9 @@ class Log(NodeLog):
 
         def has_angles(log: Self) -> bool:
             texts = log.texts('INFO')
-            return any(
-                (answers.stands_for_angles(bearings, text) and not self._forms.is_other(text))
-                or (number >= count and answers.holds_any(self._answer, text))
+            unlike = [text for text in texts if not self._forms.is_other(text)]
+            return answers.stand_for_angles(bearings, unlike) or any(
+                (number >= count and answers.holds_any(self._answer, text))
                 or (self._forms.is_answer(text) and not answers.holds_any(self._answer, text))
                 for number, text in enumerate(texts)
             )
