@@ -320,6 +320,31 @@ def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
     assert what_raised(['/any']).endswith('so make a stamp of the time with .to_msg()')
 
 
+MISSING = 'missing 1 required positional argument:'
+
+
+@pytest.mark.parametrize(
+    ('said', 'advice'),
+    [
+        (f"TypeError: Arm.tick() {MISSING} 'message'", ", so leave 'message' out of its def"),
+        (f"TypeError: Arm.tick() {MISSING} 'self'", ', so give a method as self. and its name'),
+        (
+            "AttributeError: 'function' object has no attribute 'sec' (line 9, in work: a(b))",
+            ', so make a stamp of the time with .to_msg()',
+        ),
+    ],
+)
+def test_a_callback_that_rclpy_calls_with_too_little_is_told_one_thing_to_do(
+    monkeypatch, said, advice
+):
+    monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
+    field = 'header.stamp', 'builtin_interfaces/Time'
+    monkeypatch.setattr(node_troubles, 'unpublished_field', lambda name: field)
+    why = what_raised(['/any']).replace('\u2068', '').replace('\u2069', '')
+    assert advice in why
+    assert why.count(', so ') == 1
+
+
 @pytest.mark.parametrize(
     ('called', 'advice'),
     [

@@ -117,6 +117,8 @@ def error_of(code, **names):
             ', so log a text: put the value into ',
         ),
         ('SolveIK.Request(1.0, 2.0)', ', so write each field with its name, such as SolveIK.Req'),
+        ('FloatingPointRange(1.0, 50.0)', ', so write each field with its name, such as Sol'),
+        ('JointState(["joint1"])', ', so write each field with its name, such as SolveIK.Reques'),
         ('SolveIK.Request().x', ', so look its fields up with ros2 interface show'),
         ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
         ('FloatingPointRange()[0]', ', so put the range into a list, and that into a descriptor:'),
@@ -253,6 +255,8 @@ def test_rclpy_itself_says_so_of_a_decimal_comma(run):
     for code in 'node.create_timer(0,2, node.tick)', "node.declare_parameter('hz', 5,0)":
         error = error_of(code, node=node)
         assert what_to_do(f'{type(error).__name__}: {error}') == DECIMAL_COMMA
+    error = error_of('node.create_timer(0.2, node.tick, 10)', node=node)
+    assert what_to_do(f'{type(error).__name__}: {error}').endswith(', and no queue depth')
 
 
 ANOTHER_NAME = (

@@ -36,7 +36,7 @@ BY_WORDS = (
         'and uses it',
     ),
     Case(
-        pattern=r"object has no attribute 'add_entity'"  # create_timer(0,2, callback)
+        pattern=r"(?:function|method|partial)' object has no attribute 'add_entity'"  # 0,2, f
         r"|argument must be a string or a real number, not 'tuple'"  # period_sec = 0,2
         r"|could not convert string to float: '\d+[,，]\d"  # '0,2'
         r'|element [-\d.]+ .*is not a ParameterDescriptor'  # declare_parameter('rate_hz', 5,0)
@@ -54,8 +54,8 @@ BY_WORDS = (
     ),
     Case(pattern="requires a 'super' object", to_do=', so write super() with its parentheses'),
     Case(
-        pattern="a real number, not 'method'",
-        to_do=', so give create_timer the period first, and the callback second',
+        pattern="a real number, not 'method'|object has no attribute 'add_entity'",
+        to_do=', so give create_timer the period first, the callback second, and no queue depth',
     ),
     Case(
         pattern="received <enum 'QoSPresetProfiles'>",
@@ -141,7 +141,7 @@ BY_WORDS = (
         to_do=', so give a callback by its name, without parentheses',
     ),
     Case(
-        pattern=r'_(?:Request|Response|Goal|Result|Feedback)\.__init__\(\) takes 1 positional',
+        pattern=r'(?:Request|Response|Goal|Feedback|Result|Range|State)\.__init__\(\) takes 1',
         to_do=', so write each field with its name, such as SolveIK.Request(target=point)',
     ),
     Case(

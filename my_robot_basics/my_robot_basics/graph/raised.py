@@ -1,11 +1,18 @@
 """What stopped a node: an exception of a callback or thread, or a callback that never returns."""
 
+import re
 from collections.abc import Iterable
 
 from my_robot_basics.exchange import node_troubles, wire
 from my_robot_basics.feedback.hidden import raised as safely
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.feedback.python_errors import explained, what_to_do
+
+_GETS_TOO_LITTLE = re.compile(r'\(\) missing \d+ required positional arguments?: ([^(]*)$')
+"""What Python says if a function needs more than rclpy gives it: no line of the student's calls
+it, so no line is named behind it."""
+_NO_STAMP = re.compile(r"'(?:Time|function|method)' object has no attribute 'sec'")
+"""What Python says of a stamp that is a Time, or a to_msg without its parentheses."""
 
 
 def what_raised(node_names: Iterable[str]) -> str:
@@ -17,10 +24,13 @@ def what_raised(node_names: Iterable[str]) -> str:
     why = f'its callback raised {safely(said)}'
     if said.endswith('object is not callable') and not what_to_do(said):
         why += ', so give a method by its name, without parentheses'
+    if found := _GETS_TOO_LITTLE.search(said):
+        return why + _why_too_little(theirs(found[1]))
     field, type_name = node_troubles.unpublished_field(name)
-    if "'Time' object has no attribute 'sec'" in said:
+    if _NO_STAMP.search(said):
         why += ', so make a stamp of the time with .to_msg()'
-    elif field:
+        return why
+    if field:
         where, kind = theirs(field), theirs(type_name)
         why += f', so give `{where}` a value of the type `{kind}`'
     elif type_name:
@@ -46,3 +56,10 @@ def what_ended_a_thread() -> str:
     """
     said = node_troubles.last_raised(wire.THREADS)
     return f'a thread of the notebook raised {safely(said)}' if said else ''
+
+
+def _why_too_little(names: str) -> str:
+    """A hint about a callback whose def has more parameters than rclpy gives it values."""
+    if "'self'" in names:
+        return ', so give a method as self. and its name, and not as the class and its name'
+    return f', so leave {names} out of its def: it is called without'
