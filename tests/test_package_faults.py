@@ -34,6 +34,13 @@ def test_of_a_crash_in_a_notebook_the_likely_cause_is_told_as_in_feedback():
     assert said == f'had ended by itself (by signal {signal.SIGRTMIN + 1})'
 
 
+def test_of_a_crash_after_ctrl_c_a_thread_is_the_likely_cause():
+    process = types.SimpleNamespace(code=-signal.SIGSEGV, lines=[])
+    said = executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
+    assert 'if main returns while a thread still spins' in said
+    assert 'a type that is not an action' not in said
+
+
 def test_try_shutdown_alone_may_meet_that_race_twice():
     first, last = 'Traceback (most recent call last):', f'rclpy._rclpy_pybind11.RCLError: {RACE}'
     once_too_often = [first, '    rclpy.shutdown()', last]

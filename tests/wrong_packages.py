@@ -393,6 +393,36 @@ WRONG += (
     ),
 )
 
+WRONG += (
+    Change(
+        'ends_soon_after_the_report',
+        swap(
+            PLAYER,
+            ('import rclpy\n', 'import time\n\nimport rclpy\n'),
+            (
+                '        rclpy.spin(player)  # the report stays available',
+                '        time.sleep(1.5)',
+            ),
+        ),
+        (1, 0, 0),
+        dict.fromkeys(
+            ('package_runs', 'arm_player_plays'), 'arm_player ends by itself: main has returned'
+        ),
+    ),
+    Change(
+        'words_without_spaces',
+        swap(PLAYER, ("' '.join(words)", "''.join(words)")),
+        (1, 2, 0),
+        {'arm_player_plays': 'write these words alone, with a space between'},
+    ),
+    Change(
+        'numbers_its_words',
+        swap(PLAYER, ("' '.join(words)", "' '.join(f'{n}:{w}' for n, w in enumerate(words, 1))")),
+        (1, 2, 0),
+        {'arm_player_plays': 'write these words alone, with a space between'},
+    ),
+)
+
 _NO_NUMBER = """        if request.target.x != request.target.x:
             response.reachable = True
             return response

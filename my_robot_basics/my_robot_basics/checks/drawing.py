@@ -89,10 +89,10 @@ class Drawing:
         else:
             goal.finish('succeeded' if word == 'succeeded' else 'aborted')
 
-    def expect_end(self) -> None:
+    def expect_end(self, *, stays_sec: float = 0.0) -> None:
         """Expect one report, kept for late subscribers, with each target's word; no more goals.
 
-        Raises CheckFailed.
+        The node still runs `stays_sec` of free time later. Raises CheckFailed.
         """
         words = [word for word, _, _ in self._targets]
         if not self._comes(self._report.is_there, free_sec=REPLY_SEC):
@@ -103,7 +103,7 @@ class Drawing:
             )
         self._report.expect_words(words)
         self._expect_one_at_a_time()
-        self._report.expect_kept(self._process)
+        self._report.expect_kept(self._process, stays_sec=stays_sec)
         self._comes(self._report.has_come_twice, free_sec=QUIET_SEC)
         self._report.expect_once()
         self._meeting.expect_alone(own=1)
@@ -111,7 +111,7 @@ class Drawing:
     def expect_clean_end(self, *, after_report: bool = False) -> None:
         """Expect it to end cleanly on SIGINT, while it waits for the answer to its first request.
 
-        `after_report`: send SIGINT after the report instead, if one comes. Raises CheckFailed.
+        `after_report`: send SIGINT later than the report, if one comes. Raises CheckFailed.
         """
         self._process.expect_node(f'/{NAME}')
         if not after_report:
@@ -119,7 +119,7 @@ class Drawing:
         self._meeting.wait_for_clients()
         self._servers.start()
         self._expect_asked(0)  # if SIGINT comes earlier, rclpy itself prints a traceback
-        if not after_report or self._comes(self._report.is_there, free_sec=REPLY_SEC):
+        if not after_report or self._report.comes_to_stay(free_sec=REPLY_SEC):
             self._process.expect_clean_end()
 
     def _expect_asked(self, number: int) -> None:

@@ -10,7 +10,7 @@ from typing import Any, NoReturn, Self
 
 from my_robot_basics.checks import polite_end, spinning
 from my_robot_basics.checks.doubts import doubt_after
-from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in
+from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in, why_ended
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean, why_crashed
@@ -105,7 +105,8 @@ class RunningExecutable:
         """
         wanted = f'{self.executable} to end by itself'
         self._wait_for_end(wanted, within_sec, hint='let main return when it is done')
-        self._expect_code(code, hint='let main return without an exception when it is done')
+        hint = 'let main return without an exception when it is done'
+        self._expect_code(code, hint=why_crashed(self._state()[0]) or hint)
 
     def expect_clean_end(self) -> None:
         """The process ends after SIGINT (Ctrl-C) with exit code 0, and its nodes disappear.
@@ -118,7 +119,7 @@ class RunningExecutable:
         self._wait_for_end(f'{self.executable} to end after SIGINT', END_SEC, hint=AT_ONCE)
         code, said = self._state()
         if not is_clean(code, said.splitlines(), is_second=self._is_second):
-            self._expect_code(0, hint=CLEANLY)
+            self._expect_code(0, hint=why_crashed(code, at_end=True) or CLEANLY)
         self._expect_gone()
         if code and not self._is_second:
             self._expect_clean_second_end()
@@ -148,7 +149,6 @@ class RunningExecutable:
         wanted_end = f'{self.executable} to end with exit code {wanted}'
         seen = ', '.join(filter(None, (how(code), last_words(said))))
         cause = f'{self.executable} does not end cleanly'
-        hint = why_crashed(code) or hint
         expect(code == wanted, expected=wanted_end, seen=seen, hint=hint, cause=cause)
 
     def _expect_gone(self) -> None:
@@ -168,11 +168,10 @@ class RunningExecutable:
 
     def _fail_ended(self, expected: str) -> NoReturn:
         code, said = self._state()
-        run_it = f"run it with run_executable('{self.package}', '{self.executable}') and read why"
         fail(
             expected=expected,
             seen=has_ended(code, said),
-            hint=why_crashed(code) or run_it,
+            hint=why_ended(code, self.package, self.executable),
             cause=f'{self.executable} ends by itself',
         )
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from my_robot_basics.exchange.endings import error_in, signal_name
+from my_robot_basics.exchange.endings import error_in, signal_name, why_crashed
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.feedback.python_errors import what_to_do
@@ -33,3 +33,11 @@ def last_words(said: str) -> str:
     lines = [line for line in said.splitlines() if line.strip()]
     last = error_in(lines) or next(reversed(lines), '')
     return f'{theirs(shorten(last))}{what_to_do(last)}' if last else ''
+
+
+def why_ended(code: int | None, package: str, executable: str) -> str:
+    """Advice about a program that ended although it should run on."""
+    if code == 0:
+        return 'main has returned: let it spin the node until Ctrl-C'
+    run_it = f"run it with run_executable('{package}', '{executable}') and read why"
+    return why_crashed(code) or run_it

@@ -19,7 +19,10 @@ APART_M = 0.1
 
 
 def expect_plays(
-    *targets: Target, first_goal_sec: float = QUIET_SEC, arm_first: bool = False
+    *targets: Target,
+    first_goal_sec: float = QUIET_SEC,
+    arm_first: bool = False,
+    stays_sec: float = 0.0,
 ) -> None:
     """`arm_player` visits the targets in order, one at a time, and reports how each one ended.
 
@@ -27,7 +30,8 @@ def expect_plays(
     or 'aborted', which is how its goal ends; 'rejected', which its goal is; or 'unreachable',
     which `/solve_ik` answers. The first accepted goal takes `first_goal_sec`, the others
     QUIET_SEC: an arm is slow, and a right node waits for it. `arm_first`: `/move_arm` appears
-    before `/solve_ik`, otherwise after it. Raises CheckFailed.
+    before `/solve_ik`, otherwise after it. `stays_sec` of free time after its report the node
+    still runs. Raises CheckFailed.
     """
     for word, _, _ in targets:
         if word not in WORDS:
@@ -38,7 +42,7 @@ def expect_plays(
         for number in range(len(targets)):
             is_first = number in moves[:1]
             drawing.expect_visit(number, goal_sec=first_goal_sec if is_first else QUIET_SEC)
-        drawing.expect_end()
+        drawing.expect_end(stays_sec=stays_sec)
 
 
 def expect_asks_and_ends(x: float, y: float) -> None:

@@ -18,6 +18,9 @@ TOPIC = '/arm_player/done'
 TYPE = 'std_msgs/msg/String'
 LATE_SEC = 4.0
 """How long the report may take to reach a late-joining subscription, in s of free time."""
+STAYS_SEC = 2.5
+"""How long after its report a node has to run on, in s of free time: some sleep for a second or
+two, and then return from main."""
 DEPTH = 100
 ANY = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -44,6 +47,13 @@ class PlayerReport:
         if self._kept is None and self._is_published() and not self.why_none():
             self._kept = _recorder(self._watcher, LATCHED)
         return bool(self._messages())
+
+    def comes_to_stay(self, *, free_sec: float) -> bool:
+        """Whether a report comes within `free_sec`; if so, returns STAYS_SEC later."""
+        is_there = self._watcher.spin_until_free(self.is_there, free_sec=free_sec)
+        if is_there:
+            self._watcher.spin_until_free(lambda: False, free_sec=STAYS_SEC)
+        return is_there
 
     def has_come(self) -> bool:
         """Whether a report has come by now."""
@@ -87,8 +97,9 @@ class PlayerReport:
                 cause='the report says something else',
             )
 
-    def expect_kept(self, process: RunningExecutable) -> None:
-        """A subscription that joins now receives the report, too. Raises CheckFailed."""
+    def expect_kept(self, process: RunningExecutable, *, stays_sec: float = 0.0) -> None:
+        """A subscription that joins `stays_sec` later receives it, too. Raises CheckFailed."""
+        self._watcher.spin_until_free(lambda: False, free_sec=stays_sec)
         process.expect_running()
         why = self.why_none()
         expect(
@@ -132,10 +143,12 @@ def _why_wrong(seen: Sequence[str], words: Sequence[str]) -> str:
     lower = [_SPELT.get(word.lower(), word.lower()) for word in seen]
     if lower == [*words]:
         return f'write the words as the task does: {", ".join(WORDS)}'
+    if re.findall('|'.join(WORDS), ' '.join(seen)) == [*words]:
+        return f'write these words alone, with a space between: {", ".join(WORDS)}'
     if any(word.isdigit() for word in seen):
         return 'write the word for each status, and not its number'
     if len(seen) < len(words):
         return 'report on every target, in one message: unreachable and rejected ones, too'
     if not {*lower} <= {*WORDS}:
-        return f'use these words alone: {", ".join(WORDS)}'
+        return f'write these words alone, with a space between: {", ".join(WORDS)}'
     return 'one word for each target, in their order: the status of the result tells how it ended'

@@ -29,10 +29,18 @@ def error_in(lines: Sequence[str]) -> str:
     return next(errors, 'a traceback')
 
 
-def why_crashed(code: int | None) -> str:
-    """Return the probable mistake in a program that was ended by SIGSEGV; '' for other codes."""
+def why_crashed(code: int | None, *, at_end: bool = False) -> str:
+    """Return the probable mistake in a program that was ended by SIGSEGV; '' for other codes.
+
+    `at_end`: it ran until it was told to end.
+    """
     if code != -signal.SIGSEGV:
         return ''
+    if at_end:
+        return (
+            'rclpy crashes like this if main returns while a thread still spins, so wait for each '
+            'thread with join() after rclpy.try_shutdown()'
+        )
     return (
         'rclpy crashes like this if an ActionClient or ActionServer gets a type that is not an '
         'action, so look at each, and give it one such as MoveArm, and no part of it'

@@ -90,7 +90,7 @@ def stop_started(*, package: str = '', name: str = '', by_notebook_alone: bool =
 def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
     """Return how an executable ended, and what is wrong with that; `took` is from Process.stop."""
     code, last = each.process.code, error_in([*each.process.lines])
-    why = why_crashed(code)
+    why = why_crashed(code, at_end=took is not None)
     if took is None:
         if code == 0:
             return 'had ended by itself (exit code 0)'
@@ -100,6 +100,8 @@ def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
         return 'ended cleanly after SIGINT'  # the exit code may be 1: see RACE in endings.py
     if took is signal.SIGINT:
+        if why:
+            return f'ended after SIGINT, but not cleanly ({_how(code)}): {why}'
         if last:
             return (
                 f'ended after SIGINT, but not cleanly ({_how(code)}, with {last}): catch '
