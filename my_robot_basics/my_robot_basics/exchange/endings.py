@@ -38,8 +38,8 @@ def why_crashed(code: int | None, *, at_end: bool = False) -> str:
         return ''
     if at_end:
         return (
-            'rclpy crashes like this if main returns while a thread still spins, so wait for each '
-            'thread with join() after rclpy.try_shutdown()'
+            'rclpy can crash like this if main returns while a thread still spins, so wait for '
+            'each thread with join() after rclpy.try_shutdown()'
         )
     return (
         'rclpy crashes like this if an ActionClient or ActionServer gets a type that is not an '
