@@ -1,7 +1,7 @@
 """Send messages through a node one at a time: each must come out immediately, exactly once."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 from my_robot_basics.checks.enough import fewest_in_a_row
@@ -48,7 +48,7 @@ class Passage:
         recorder: Recorder,
         *,
         publish: Callable[[Any], None],
-        what: Callable[[Any], Any],
+        what: Callable[[Any], Hashable],
         earlier: Any = None,
     ) -> None:
         """`what(message)` is equal for equal messages. Only messages received from now on count.
@@ -61,12 +61,12 @@ class Passage:
         self._earlier = None if earlier is None else what(earlier)
         self._seen = len(recorder.received)
         self._waiting: list[Sent] = []
-        self._out: list[tuple[Sent, int]] = []
+        self._out: list[tuple[Hashable, int]] = []
         self._copies: list[int] = []
         """How often each message of `_out` came out."""
-        self._own: set[Any] = set()
+        self._own: set[Hashable] = set()
         """`what(message)` of each message that was published here."""
-        self._others: list[tuple[Any, int]] = []
+        self._others: list[tuple[Hashable, int]] = []
         self._pushed_out, self._slowest_sec = 0, 0.0
         self._watch, self._began_ns = Stopwatch(), time.time_ns()
 
@@ -119,9 +119,7 @@ class Passage:
         received_ns = min(next(of_others_ns, 0), self._began_ns + round(ON_TIME_SEC * 1e9))
         since_ns = received_ns + round(LEAST_SEC * 1e9)
         invented = [
-            message
-            for message, sent_ns in self._others
-            if sent_ns > since_ns and self._what(message) not in known
+            what for what, sent_ns in self._others if sent_ns > since_ns and what not in known
         ]
         return len(invented) >= FEWEST_INVENTED
 
@@ -182,19 +180,20 @@ class Passage:
         received = self._recorder.received[self._seen :]
         self._seen += len(received)
         for message, sent_ns in received:
+            what = self._what(message)
             for place, sent in enumerate(self._waiting):
-                if self._what(message) == self._what(sent.message):
+                if what == self._what(sent.message):
                     del self._waiting[place]
-                    self._out.append((sent, sent_ns))
+                    self._out.append((what, sent_ns))
                     self._copies.append(1)
                     break
             else:
-                self._count(message, sent_ns)
+                self._count(what, sent_ns)
 
-    def _count(self, message: Any, sent_ns: int) -> None:
+    def _count(self, what: Hashable, sent_ns: int) -> None:
         for place in reversed(range(max(0, len(self._out) - RECENT), len(self._out))):
-            if self._what(message) == self._what(self._out[place][0].message):
+            if what == self._out[place][0]:
                 self._copies[place] += 1
                 return
-        if self._out or self._what(message) != self._earlier:
-            self._others.append((message, sent_ns))
+        if self._out or what != self._earlier:
+            self._others.append((what, sent_ns))

@@ -1,14 +1,14 @@
 """A node that republishes what it receives: publish on one topic, subscribe to the other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rclpy.serialization import serialize_message
 
 from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.content import content
 from my_robot_basics.checks.latched import published_before_discovery
 from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
@@ -96,7 +96,8 @@ class Relay:
                     self._expect_out(watcher, recorder, message, raised, before=before)
                     # if a second copy comes, it comes right after the first
                     watcher.spin_for(QUIET_SEC)
-                    count = sum(self._is_same(each, message) for each in recorder.messages())
+                    what = self._what(message)
+                    count = sum(self._what(each) == what for each in recorder.messages())
                     if count > 1:
                         self._fail(*RelayFaults(copies=count).fault())
                     if number + 1 == times:
@@ -165,11 +166,12 @@ class Relay:
         again: Publisher | None = None,
     ) -> None:
         """Wait for the message on `to`, after `before` others; send it `again` meanwhile."""
+        what = self._what(message)
         for times in free_turns(LOST_SEC):
             if again is not None and (times <= OFTEN or times % SELDOM == 0):
                 again.publish(message)
             if watcher.spin_until(
-                lambda: any(self._is_same(received, message) for received in recorder.messages()),
+                lambda: any(self._what(each) == what for each in recorder.messages()),
                 timeout_sec=AGAIN_SEC,
             ):
                 return
@@ -188,11 +190,8 @@ class Relay:
             else f'no message arrives on {topic_name}',
         )
 
-    def _what(self, message: Any) -> bytes:
+    def _what(self, message: Any) -> Hashable:
         """The part of a message that must come out unchanged: all of it, or `fields`."""
         if self.fields:
             message = type(message)(**{name: getattr(message, name) for name in self.fields})
-        return serialize_message(message)
-
-    def _is_same(self, received: Any, sent: Any) -> bool:
-        return self._what(received) == self._what(sent)
+        return content(message)

@@ -9,8 +9,7 @@ import statistics
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from rclpy.serialization import serialize_message
-
+from my_robot_basics.checks.content import content
 from my_robot_basics.checks.own_clock import (
     EXPECTED,
     HOW,
@@ -80,7 +79,7 @@ def _come_in_pairs(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
 
 
 def _are_alike(message: Any, other: Any) -> bool:
-    return serialize_message(message) == serialize_message(other)
+    return content(message) == content(other)
 
 
 def _advance(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
