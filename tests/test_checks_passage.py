@@ -32,6 +32,7 @@ def passage_through(node, **options):
     watcher = SimpleNamespace(
         spin_for=lambda _: None, spin_until_free=lambda done, free_sec: done()
     )
+    options = {'others_publish': False, **options}
     return Passage(watcher, node, publish=node.publish, what=lambda message: message, **options)
 
 
@@ -133,10 +134,71 @@ def test_a_message_that_is_late_is_not_pushed_out_of_a_short_queue_by_the_next(s
     """Four such calls on a busy machine were enough for "messages that are not republished"."""
     node = SlowNode(lambda number: slow_sec if number in (3, 9, 15, 21) else 0.001)
     watcher = SimpleNamespace(spin_for=lambda _: None, spin_until_free=node.spin)
-    passage = Passage(watcher, node, publish=node.publish, what=lambda message: message)
+    passage = Passage(
+        watcher, node, publish=node.publish, what=lambda message: message, others_publish=False
+    )
     faults = passage.carry(Sent(n, '') for n in count())
     assert len(faults.lost) == lost
     assert faults.is_whole() == (lost == 0)
+
+
+class NodeOfTwoPublishers(Node):
+    """Loses some of the messages; instead, three of another publisher come out."""
+
+    def publish(self, message):
+        number = next(self.numbers)
+        if self.loses(number, message):
+            self.received += [(f'{number}: {n}', 0) for n in 'abc']
+        else:
+            self.received.append((message, 0))
+
+
+def carried_beside_another_publisher(loses, **options):
+    passage = passage_through(NodeOfTwoPublishers(loses), **options)
+    return passage.carry(Sent(n, '') for n in count())
+
+
+@pytest.mark.parametrize('others_publish', [False, True])
+def test_a_message_is_sent_again_if_another_publisher_may_have_pushed_it_out(
+    is_busy, others_publish
+):
+    """Without this, stock Validate failed right nodes with a queue of depth 1 beside the arm."""
+    faults = carried_beside_another_publisher(
+        lambda number, message: number in (3, 9, 10, 21, 27), others_publish=others_publish
+    )
+    assert faults.is_whole() == (is_busy and others_publish)
+
+
+@pytest.mark.usefixtures('is_busy')
+def test_a_message_that_is_lost_each_time_is_not_pushed_out():
+    faults = carried_beside_another_publisher(
+        lambda number, message: message % 10 == 3, others_publish=True
+    )
+    assert len(faults.lost) == 4
+
+
+@pytest.mark.usefixtures('is_busy')
+def test_many_losses_are_no_coincidence_even_beside_another_publisher():
+    faults = carried_beside_another_publisher(
+        lambda number, message: number % 3 != 0, others_publish=True
+    )
+    assert not faults.is_whole()
+
+
+def test_a_message_that_was_sent_again_may_come_out_twice(monkeypatch):
+    """The first copy was only late."""
+    monkeypatch.setattr(pairs.Stopwatch, 'is_busy', lambda _: True)
+
+    class LateTwice(NodeOfTwoPublishers):
+        def publish(self, message):
+            was_lost = self.received and str(self.received[-1][0]).endswith(': c')
+            super().publish(message)
+            if was_lost:
+                self.received.append(self.received[-1])
+
+    node = LateTwice(lambda number, message: number in (3, 9))
+    passage = passage_through(node, others_publish=True)
+    assert passage.carry(Sent(n, '') for n in count()).is_whole()
 
 
 @pytest.mark.parametrize(('lost', 'is_named'), [(2, False), (3, True), (4, True)])

@@ -5,7 +5,9 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 from my_robot_basics.checks.enough import fewest_in_a_row
+from my_robot_basics.checks.invented import has_invented
 from my_robot_basics.checks.pairs import GAP_SEC, Pairs
+from my_robot_basics.checks.pushed_out import FLOOD, PushedOut
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
@@ -26,17 +28,10 @@ FEWEST_LOST = 2
 """This many messages that never came out are no coincidence if later ones did."""
 MOST_LATE = 4
 """This many late messages decide; a BEST_EFFORT endpoint may lose fewer without a fault."""
-FLOOD = 50
-"""If others publish this many messages while `carry` waits for one, a queue overflows, and the
-loss is not the node's fault."""
-MOST_PUSHED_OUT = 20
-"""At most this many losses are excused by a FLOOD; more are no coincidence."""
-FEWEST_INVENTED = 3
-"""This many messages that nobody sent are a fault. Fewer may be older than the subscription."""
+MOST_AGAIN = 3  # how often a message is sent again that others' may have pushed out
 RECENT = 20
 """A message counts as a copy if it equals one of the last RECENT that came out."""
-PAUSE_SEC = 1.1
-PAUSES = 3
+PAUSE_SEC, PAUSES = 1.1, 3
 
 
 class Passage:
@@ -49,12 +44,13 @@ class Passage:
         *,
         publish: Callable[[Any], None],
         what: Callable[[Any], Hashable],
+        others_publish: bool,
         earlier: Any = None,
     ) -> None:
         """`what(message)` is equal for equal messages. Only messages received from now on count.
 
-        `earlier` is a message that was sent repeatedly before: a slow node may have more of it in
-        its queue, and these come out before all others.
+        `others_publish`: whether nodes of others publish on the same topic. `earlier`: a message
+        that was sent repeatedly before. A slow node may let it out from its queue more often.
         """
         self._watcher, self._recorder = watcher, recorder
         self._publish, self._what = publish, what
@@ -63,11 +59,10 @@ class Passage:
         self._waiting: list[Sent] = []
         self._out: list[tuple[Hashable, int]] = []
         self._copies: list[int] = []
-        """How often each message of `_out` came out."""
-        self._own: set[Hashable] = set()
-        """`what(message)` of each message that was published here."""
+        """How often each message of `_out` came out, less the times that it was sent again."""
+        self._own: set[Hashable] = set()  # what was published here
         self._others: list[tuple[Hashable, int]] = []
-        self._pushed_out, self._slowest_sec = 0, 0.0
+        self._pushed_out, self._slowest_sec = PushedOut(others_publish), 0.0
         self._watch, self._began_ns = Stopwatch(), time.time_ns()
 
     def carry(self, messages: Iterator[Sent]) -> RelayFaults:
@@ -81,14 +76,13 @@ class Passage:
             # a node that swaps two messages has one in time, but never two in a row
             if in_a_row > 1 and self._is_over(MOST_SEC):
                 break
-            others, sent = len(self._others), next(messages)
+            others, sent, watch = len(self._others), next(messages), Stopwatch()
             if self._send(sent):
                 in_a_row += 1
-            elif len(self._others) - others >= FLOOD and self._pushed_out < MOST_PUSHED_OUT:
-                self._pushed_out += 1
+            elif self._pushed_out.excuse(len(self._others) - others >= FLOOD):
                 self._waiting.remove(sent)
             # wait for it: in a queue of depth 1, the next message would push it out
-            elif self._wait_for(sent, free_sec=ON_TIME_SEC):
+            elif self._comes_out_later(sent, watch, others):
                 in_a_row += 1
             else:
                 late, in_a_row, row = late + 1, 0, Stopwatch()
@@ -106,22 +100,12 @@ class Passage:
         self._take()
         doubled = [number for number in self._copies if number > 1]
         # a message that counts as pushed out may still come, and looks like a copy of its equal
-        return min(doubled) if len(doubled) > bool(self._pushed_out) else 1
+        return min(doubled) if len(doubled) > bool(self._pushed_out.number) else 1
 
     def invents(self, sent: Sequence[tuple[Any, int]]) -> bool:
-        """Whether messages came out that nobody sent. `sent`: all messages and their send times.
-
-        What another publisher sent before its first message in `sent` is unknown. So messages
-        count only after that one, or after ON_TIME_SEC if that is sooner.
-        """
-        known = {self._what(message) for message, _ in sent}
-        of_others_ns = (ns for message, ns in sent if self._what(message) not in self._own)
-        received_ns = min(next(of_others_ns, 0), self._began_ns + round(ON_TIME_SEC * 1e9))
-        since_ns = received_ns + round(LEAST_SEC * 1e9)
-        invented = [
-            what for what, sent_ns in self._others if sent_ns > since_ns and what not in known
-        ]
-        return len(invented) >= FEWEST_INVENTED
+        """Whether messages came out that are not in `sent`: all messages and their send times."""
+        contents = [(self._what(message), sent_ns) for message, sent_ns in sent]
+        return has_invented(self._others, sent=contents, own=self._own, began_ns=self._began_ns)
 
     def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
         """Whether mostly only one of two messages in quick succession comes out."""
@@ -157,19 +141,36 @@ class Passage:
         timeout_sec, watch = ON_TIME_SEC, Stopwatch()
         if self._slowest_sec:
             timeout_sec = max(LEAST_SEC, TIMEOUT_FACTOR * self._slowest_sec)
-        if not self._wait_for(sent, free_sec=min(timeout_sec, ON_TIME_SEC)):
-            return False
-        self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
-        return True
+        if is_out := self._wait_for(sent, free_sec=min(timeout_sec, ON_TIME_SEC)):
+            self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
+        return is_out
 
-    def _wait_for(self, sent: Sent, *, free_sec: float) -> bool:
+    def _comes_out_later(self, sent: Sent, watch: Stopwatch, others: int) -> bool:
+        """Wait for a message; send it again while messages of others may have pushed it out."""
+
+        def is_overtaken() -> bool:
+            return self._pushed_out.may_be_by_few(len(self._others) - others, watch)
+
+        for again in range(MOST_AGAIN + 1):
+            if again:
+                others, watch = len(self._others), Stopwatch()
+                self._let_in(sent)
+            if self._wait_for(sent, free_sec=ON_TIME_SEC, unless=is_overtaken):
+                self._copies[-1] -= again
+                return True
+            if not self._pushed_out.excuse(is_overtaken()):
+                break
+        return False
+
+    def _wait_for(self, sent: Sent, *, free_sec: float, unless: Callable[[], bool] = bool) -> bool:
         """Wait up to `free_sec` of free time for a message; return whether it came out."""
 
         def is_out() -> bool:
             self._take()
             return not any(each is sent for each in self._waiting)
 
-        return self._watcher.spin_until_free(is_out, free_sec=free_sec)
+        self._watcher.spin_until_free(lambda: is_out() or unless(), free_sec=free_sec)
+        return is_out()
 
     def _let_in(self, sent: Sent) -> None:
         self._own.add(self._what(sent.message))

@@ -59,6 +59,10 @@ class Recorder:
         self._publishers = max(now, self._publishers, key=len)
         return self._publishers
 
+    def has_other_publishers(self, other: 'Recorder') -> bool:
+        """Whether nodes publish on this topic that do not publish on that of the other one."""
+        return bool(set(self.publishers()) - set(other.publishers()))
+
     def endpoint_gids(self) -> set[tuple[int, ...]]:
         """The DDS endpoint GIDs of the publishers that exist now."""
         infos = graphs.publisher_infos(self._node, self.topic_name)

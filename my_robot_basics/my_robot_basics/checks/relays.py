@@ -96,8 +96,7 @@ class Relay:
                     self._expect_out(watcher, recorder, message, raised, before=before)
                     # if a second copy comes, it comes right after the first
                     watcher.spin_for(QUIET_SEC)
-                    what = self._what(message)
-                    count = sum(self._what(each) == what for each in recorder.messages())
+                    count = list(map(self._what, recorder.messages())).count(self._what(message))
                     if count > 1:
                         self._fail(*RelayFaults(copies=count).fault())
                     if number + 1 == times:
@@ -118,7 +117,12 @@ class Relay:
         watcher.spin_until(source_recorder.is_connected, timeout_sec=TIMEOUT_SEC)
         watcher.spin_for(QUIET_SEC)
         passage = Passage(
-            watcher, recorder, publish=publisher.publish, what=self._what, earlier=earlier
+            watcher,
+            recorder,
+            publish=publisher.publish,
+            what=self._what,
+            others_publish=source_recorder.has_other_publishers(recorder),
+            earlier=earlier,
         )
         messages = varied(make_message)
         carried = passage.carry(messages)
@@ -178,16 +182,15 @@ class Relay:
             if times % TIMES_RAISED == 0 and raised.hint():
                 break
         ends, others = RelayEndpoints(self.source, self.to), recorder.messages()[before:]
-        topic_name = self.to
         has_others, seconds = bool(others), min(times * AGAIN_SEC, LOST_SEC)
         fail(
             expected=f'a message from {self.source} to be republished on {self.to}, unchanged',
             seen=f'only others in {seconds:g} s' if has_others else f'none in {seconds:g} s',
             hint=ends.why_lost(watcher, is_latched=again is None, has_others=has_others)
             + what_differs(others, message, self.fields),
-            cause=f'only other messages arrive on {topic_name}'
+            cause=f'only other messages arrive on {self.to}'
             if has_others
-            else f'no message arrives on {topic_name}',
+            else f'no message arrives on {self.to}',
         )
 
     def _what(self, message: Any) -> Hashable:
