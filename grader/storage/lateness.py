@@ -118,7 +118,7 @@ def _outdated(
     """Yield notebooks whose penalty is wrong for their score, and the right penalty."""
     rules = found or Deadlines()
     found_late = book.db.execute(_LATE).unique().scalars().all()
-    scores = dict(book.db.execute(_SCORES).tuples().all()) if found_late else {}
+    scores = dict(book.db.execute(_SCORES).all()) if found_late else {}
     for late in found_late:
         for notebook in late.notebooks:
             score = scores.get(notebook.id, 0.0)
