@@ -5,26 +5,26 @@ from collections.abc import Hashable
 from typing import Any
 
 import numpy as np
-from rclpy.serialization import deserialize_message, serialize_message
 
 
 def content(message: Any) -> Hashable:
-    """Everything that a message holds once it is received: a float32 is rounded then.
+    """Everything that a message holds, as a subscription receives it: a float32 is rounded.
 
     The serialized bytes would not do: Fast CDR leaves the bytes between fields as they were in
     memory, such as those before an empty sequence of doubles, and these differ from time to time.
     """
-    return _hashable(deserialize_message(serialize_message(message), type(message)))
+    types = message.get_fields_and_field_types()
+    return tuple(_hashable(getattr(message, name), types[name]) for name in types)
 
 
-def _hashable(value: Any) -> Hashable:
+def _hashable(value: Any, type_name: str) -> Hashable:
     if hasattr(value, 'get_fields_and_field_types'):
-        return tuple(
-            _hashable(getattr(value, name)) for name in value.get_fields_and_field_types()
-        )
+        return content(value)
     if isinstance(value, array.array | np.ndarray):
         return value.tobytes()
-    if isinstance(value, list):
-        return tuple(map(_hashable, value))
-    # nan is not equal to nan, and 0.0 is equal to -0.0; their texts are what is wanted here
-    return value.hex() if isinstance(value, float) else value
+    if isinstance(value, list | tuple):
+        return tuple(_hashable(each, '') for each in value)
+    if isinstance(value, float):
+        # nan is not equal to nan, and 0.0 is equal to -0.0; their texts are what is wanted here
+        return (float(np.float32(value)) if type_name == 'float' else value).hex()
+    return value
