@@ -181,7 +181,7 @@ OWN_DOING = {
     'the end of a child': (
         'import ctypes, os\n'
         'if ctypes.CDLL(None).syscall(56, 9, 0, 0, 0, 0) == 0: os._exit(0)\n'
-        'import time; time.sleep(2)',
+        'import time; time.sleep(8)',
         'your code sent it SIGKILL',
     ),
     'less processor time': (
