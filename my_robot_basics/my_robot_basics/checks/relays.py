@@ -170,7 +170,7 @@ class Relay:
         again: Publisher | None = None,
     ) -> None:
         """Wait for the message on `to`, after `before` others; send it `again` meanwhile."""
-        what = self._what(message)
+        what, topic_name = self._what(message), self.to
         for times in free_turns(LOST_SEC):
             if again is not None and (times <= OFTEN or times % SELDOM == 0):
                 again.publish(message)
@@ -188,9 +188,9 @@ class Relay:
             seen=f'only others in {seconds:g} s' if has_others else f'none in {seconds:g} s',
             hint=ends.why_lost(watcher, is_latched=again is None, has_others=has_others)
             + what_differs(others, message, self.fields),
-            cause=f'only other messages arrive on {self.to}'
+            cause=f'only other messages arrive on {topic_name}'
             if has_others
-            else f'no message arrives on {self.to}',
+            else f'no message arrives on {topic_name}',
         )
 
     def _what(self, message: Any) -> Hashable:
