@@ -129,7 +129,7 @@ class Checks:
                 say(f'{path} could not be imported, so none of its tests were run: {why}')
             say('fix that, and run this again')
             return status
-        say(f'now the {what} that failed beside others once more, alone; they are named above')
+        say(f'the {what} named above failed while others ran: now they run again, one at a time')
         status = self.call(*command())
         passed = unstable(
             read_failures(self.reports / f'{what}.xml'),
@@ -139,11 +139,11 @@ class Checks:
             record = self.environment.root / RECORD
             written = add_unstable(record, passed)
             say(
-                f'{len(passed)} of the {what} failed beside others and passed alone; why is '
-                f'written in {RECORD}, which counts {written} by now'
+                f'{len(passed)} of the {what} failed while others ran and passed alone; the '
+                f'reasons are in {RECORD}, which now has {written} entries'
             )
         if count_causes(passed) > MOST:
-            say(f'more than {MOST} such in one run count as a failure: find out why they do that')
+            say(f'more than {MOST} of them in a run count as a failure: find out why they failed')
             return status or 1
         return status
 

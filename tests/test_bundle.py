@@ -69,7 +69,9 @@ def names(path):
 
 def test_a_course_that_was_never_released_is_told_in_one_sentence(course, tmp_path):
     shutil.rmtree(course.root / 'notebooks')
-    with pytest.raises(CourseError, match=r'no folder notebooks/: run \./course release$'):
+    with pytest.raises(
+        CourseError, match=r'no folder notebooks/: make it with \./course release$'
+    ):
         bundle(course, tmp_path / 'students.zip')
     assert not (tmp_path / 'students.zip').exists()
 
@@ -173,7 +175,7 @@ def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp
 def test_without_its_line_nobody_knows_what_students_need(course, fresh_lessons, tmp_path):
     pins = course.root / 'environment.txt'
     pins.write_text(pins.read_text().replace('# --- what only', '# what only'))
-    with pytest.raises(CourseError, match=r'environment\.txt does not say what students need'):
+    with pytest.raises(CourseError, match=r'environment\.txt has no line'):
         bundle(course, tmp_path / 'students.zip')
 
 
@@ -327,8 +329,8 @@ def test_what_is_on_no_list_is_named(course, tmp_path):
     with pytest.raises(CourseError) as refusal:
         bundle(course, tmp_path / 'students.zip')
     for part in (
-        'my_robot_basics/my_robot_basics/notes.txt is not on the list',
-        'LICENSE is a link',
+        'my_robot_basics/my_robot_basics/notes.txt is not in the list',
+        'LICENSE is a link: put the file itself in its place',
     ):
         assert part in str(refusal.value)
 
@@ -340,8 +342,8 @@ def test_a_stale_or_telling_lesson_is_not_bundled(course, tmp_path):
     with pytest.raises(CourseError) as refusal:
         bundle(course, tmp_path / 'students.zip')
     for part in (
-        'not what solutions/ gives: run ./course release',
+        'differs from what solutions/ gives: run ./course release',
         f'{TOY}.ipynb shows a line of an answer or a hidden test',
-        f'notebooks/{TOY}/more.txt comes from no assignment',
+        f'notebooks/{TOY}/more.txt belongs to no assignment',
     ):
         assert part in str(refusal.value)

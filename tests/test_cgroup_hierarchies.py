@@ -112,7 +112,7 @@ def test_version_1_is_of_no_use_without_the_controllers_that_matter(machine, lac
     proc = machine('4:memory:/\n3:pids:/\n', V1)
     for name in {'memory', 'pids'} - {lacking}:
         (proc / name).mkdir()
-    with pytest.raises(NoCgroups, match=f'{lacking} is not ours to use'):
+    with pytest.raises(NoCgroups, match=f'{lacking} cannot be used by this user'):
         found(proc)
 
 
@@ -161,7 +161,7 @@ def test_what_systemd_has_not_delegated_is_left_alone(machine, switches):
     proc = machine('0::/user.slice/session-3.scope\n', V2)
     tree(proc / 'unified', is_root=True)
     tree(proc / 'unified' / 'user.slice' / 'session-3.scope', processes='41')
-    with pytest.raises(NoCgroups, match=r'session-3\.scope is not ours to use'):
+    with pytest.raises(NoCgroups, match=r'session-3\.scope cannot be used by this user'):
         found(proc)
     assert switches == []
 
@@ -174,7 +174,7 @@ def test_a_place_without_the_memory_controller_is_of_no_use(machine, switches):
 
 
 def test_a_machine_without_any_says_so(machine):
-    with pytest.raises(NoCgroups, match='this Linux has none'):
+    with pytest.raises(NoCgroups, match='this Linux has no cgroups'):
         found(machine('', []))
     module._found.cache_clear()
     with pytest.raises(NoCgroups, match='not mounted here'):

@@ -139,7 +139,7 @@ def test_a_file_that_can_t_be_read_costs_only_itself(course, came_in, monkeypatc
     }
     (came_in / f'ada_{TOY}.ipynb').unlink()
     (row,) = (row for row in collect(course, came_in) if row.path.startswith('ada'))
-    assert (row.outcome, row.reason) == (LEFT, 'it can not be read: Input/output error')
+    assert (row.outcome, row.reason) == (LEFT, 'it cannot be read: Input/output error')
 
 
 def test_thousands_of_broken_files_print_some_lines(course, came_in, capsys):

@@ -103,7 +103,7 @@ def test_blackboard_has_times_and_no_numbers(course, came_in):
 def test_damaged_numbers_are_said_in_a_sentence(damage, course, came_in):
     write(course.gradebook / 'numbers.json', damage)
     uploaded(came_in, 'Ada', 1, '')
-    with pytest.raises(CourseError, match='is damaged: put a copy of it back, or remove it'):
+    with pytest.raises(CourseError, match='is damaged: restore it from a backup, or remove it'):
         rows(course, came_in)
 
 

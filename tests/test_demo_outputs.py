@@ -118,7 +118,9 @@ def test_a_release_takes_the_pictures_out_of_the_source_and_keeps_its_own(tmp_pa
     assert any(f'solutions/{TOY}/{TOY}.ipynb holds' in line for line in stale_or_leaking(course))
     told = []
     release(course, say=told.append)
-    assert told == [f'solutions/{TOY}/{TOY}.ipynb keeps no pictures: notebooks/ has them now']
+    assert told == [
+        f'solutions/{TOY}/{TOY}.ipynb holds no pictures any more: they are in notebooks/ now'
+    ]
     assert PIXEL not in course.source_path(TOY).read_text()
     assert PIXEL in course.release_path(TOY).read_text()
     assert stale_or_leaking(course) == []

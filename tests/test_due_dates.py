@@ -59,7 +59,7 @@ def test_a_due_date_an_extension_and_their_end(course, capsys):
     said = capsys.readouterr().out
     assert f'{TOY}  due 2026-11-30 23:59 CST' in said
     assert '  extended for 小明 O"Neil until 2026-12-03 12:00 CST' in said
-    assert 'who has handed in nothing: is that the name?' in said
+    assert 'who has not handed it in yet: check that the name is right' in said
     found = deadlines(course.gradebook, course.assignments())
     assert found.due == {TOY: datetime(2026, 11, 30, 15, 59)}
     assert found.extended == {(TOY, '小明 O"Neil'): datetime(2026, 12, 3, 4, 0)}
@@ -113,7 +113,7 @@ def test_a_broken_file_is_not_written_over(course, capsys):
     course.gradebook.mkdir()
     (course.gradebook / FILE).write_text('[due')
     assert due(course, TOY, '2026-12-01') == 1
-    assert 'see the example' in capsys.readouterr().err
+    assert 'Due dates, has an example' in capsys.readouterr().err
     assert (course.gradebook / FILE).read_text() == '[due'
 
 

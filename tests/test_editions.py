@@ -52,7 +52,7 @@ def test_a_release_makes_an_edition_for_each_folder_of_locale(toy):
     assert stale_or_leaking(toy) == []
     assert release(toy) == []
     put(toy, '# A toy', '# 玩偶')
-    stale = f'notebooks/zh_CN/{TOY}/{TOY}.ipynb is not what solutions/ gives'
+    stale = f'notebooks/zh_CN/{TOY}/{TOY}.ipynb differs from what solutions/ gives'
     assert stale in [line.partition(':')[0] for line in stale_or_leaking(toy)]
 
 

@@ -111,7 +111,7 @@ REFUSALS = {
     'no user namespaces': ('--unshare-user', 'files and rights of its own'),
     'no network namespaces': ('--unshare-net', 'a network of its own'),
     'no fresh /proc': ('--proc', 'processes of its own'),
-    'nested user namespaces': ('--disable-userns', 'no namespaces of a student'),
+    'nested user namespaces': ('--disable-userns', 'no further namespaces'),
 }
 
 

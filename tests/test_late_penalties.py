@@ -155,23 +155,26 @@ def test_without_a_file_nbgraders_own_due_date_stays_and_costs_nothing(course):
     ('rules', 'wrong'),
     [
         ('[due', 'at end of document'),
-        ('[dues]', "'dues' is not known"),
-        ('due = 1', r'\[due\] is no table'),
+        ('[dues]', "'dues' is not a name that"),
+        ('due = 1', r'due must be a table'),
         ('[due]\n99_other = 2026-01-01T00:00:00Z', "there is no assignment '99_other'"),
-        (f'[due]\n{TOY} = 2026-01-01T00:00:00', 'has no time with its zone'),
-        (f'[due]\n{TOY} = 2026-01-01', 'has no time with its zone'),
-        (f'[due]\n{TOY} = "tomorrow"', 'has no time with its zone'),
-        (f'[extended.{TOY}]\nada = 2026-01-01T00:00:00Z', 'extended, and has no due date'),
-        ('[late]\nper_week = 0.1', "'per_week' is not known"),
-        ('[late]\nper_day = "10 %"', 'per_day is no number'),
-        ('[late]\nper_day = 10', 'per_day = 10 is out of range'),
-        ('[late]\nat_most = -1', 'at_most = -1 is out of range'),
-        ('[late]\nper_day = nan', 'per_day = nan is out of range'),
+        (f'[due]\n{TOY} = 2026-01-01T00:00:00', 'must have a date and a time with its zone'),
+        (f'[due]\n{TOY} = 2026-01-01', 'must have a date and a time with its zone'),
+        (f'[due]\n{TOY} = "tomorrow"', 'must have a date and a time with its zone'),
+        (
+            f'[extended.{TOY}]\nada = 2026-01-01T00:00:00Z',
+            r'is in \[extended\], but has no date in \[due\]',
+        ),
+        ('[late]\nper_week = 0.1', "'per_week' is not a name that"),
+        ('[late]\nper_day = "10 %"', 'per_day must be a number'),
+        ('[late]\nper_day = 10', 'per_day = 10 is out of range: expected 0 to 1'),
+        ('[late]\nat_most = -1', 'at_most = -1 is out of range: expected 0 to 1'),
+        ('[late]\nper_day = nan', 'per_day = nan is out of range: expected 0 to 1'),
     ],
 )
 def test_what_is_wrong_in_the_file_is_said_before_anything_is_graded(rules, wrong, course):
     (course.gradebook / FILE).write_text(rules)
-    with pytest.raises(CourseError, match=f'{FILE}: .*{wrong}.*: see the example'):
+    with pytest.raises(CourseError, match=f'{FILE}: .*{wrong}.* has an example'):
         list(grade_all(course, [], trust_students=True))
 
 
@@ -187,7 +190,8 @@ def test_an_extension_of_somebody_who_has_handed_in_nothing_is_told(course):
     (course.gradebook / FILE).write_text(RULES)
     submit(course, 'ada', '')
     assert extended_for_nobody(course) == [
-        f'{FILE} extends {TOY} for 小明, who has handed in nothing: is that the name?'
+        f'{FILE} extends {TOY} for 小明, who has not handed it in yet: '
+        'check that the name is right'
     ]
     submit(course, '小明', '')
     assert extended_for_nobody(course) == []
@@ -267,7 +271,7 @@ def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(co
     assert wanted.items() <= rows['Lovelace, Ada'].items()
     assert [*exported(course, '--student', "['bob']")] == ['bob']
     (course.gradebook / FILE).write_text('[late]\nper_day = 2\n')
-    assert 'per_day = 2 is out of range: see the example in docs/' in exported(course)
+    assert 'per_day = 2 is out of range: expected 0 to 1. Correct it: docs/' in exported(course)
 
 
 @pytest.mark.starts

@@ -197,7 +197,7 @@ def test_a_link_swapped_in_between_look_and_read_is_never_followed(inbound, tmp_
     whose, reasons = collected(inbound, tmp_path)
     assert swaps
     assert whose == {}
-    assert reasons == ['it can not be read: Too many levels of symbolic links']
+    assert reasons == ['it cannot be read: Too many levels of symbolic links']
 
 
 def test_no_swap_of_hundreds_wins(inbound, tmp_path):

@@ -98,7 +98,7 @@ def test_a_token_that_is_about_to_end_is_used_no_more(given, platform):
 def test_only_what_is_final_is_sent_and_who_is_unknown_is_listed(given, platform, capsys):
     assert given(cell('ada', None), cell('dan', 3.0), cell('bob', -1.0)) == 0
     said = capsys.readouterr().out
-    assert f'{LESSON}: ada waits for a person' in said
+    assert f'{LESSON}: ada needs manual grading' in said
     assert f'{LESSON}: dan is not in [user_ids] of lti.toml' in said
     assert platform.received == [sent(1, '4712', 0.0)]  # no platform takes less than nothing
 
@@ -116,14 +116,16 @@ def test_one_assignment_can_be_sent(given, platform, capsys):
     [
         ('500', 'it answered 500: {"error": "the database is away"}'),
         ('hangs', 'Timeout'),
-        ('talks nonsense', 'an answer of another form than LTI has'),
+        ('talks nonsense', 'an answer that is not in the format of LTI'),
     ],
 )
 def test_nothing_is_lost_while_the_platform_is_away(mood, why, given, platform, capsys):
     platform.mood = mood
     assert given(cell('ada', 4.0), cell('bob', 2.5)) == 1
     said = capsys.readouterr().out
-    assert f'the platform is away: {why}' in said or (mood == 'hangs' and why in said)
+    assert f'the platform did not answer as expected: {why}' in said or (
+        mood == 'hangs' and why in said
+    )
     assert '0 scores sent, 2 waiting\nNothing is lost.' in said
     assert len(platform.requests) == 1  # it is not asked for each student
 
@@ -137,7 +139,7 @@ def test_nothing_is_lost_where_nobody_answers(given, platform, capsys):
     there = SETTINGS.format(client=CLIENT, address=f'http://127.0.0.1:{free_port()}')
     write(given.course, there)
     assert given(cell('ada', 4.0)) == 1
-    assert 'the platform is away: ConnectionError' in capsys.readouterr().out
+    assert 'the platform did not answer as expected: ConnectionError' in capsys.readouterr().out
     write(given.course, SETTINGS.format(client=CLIENT, address=f'http://127.0.0.1:{port}'))
     assert given(cell('ada', 4.0)) == 0
     assert platform.received == [sent(1, '4711', 4.0)]
@@ -173,7 +175,7 @@ def test_a_newer_score_that_a_person_gave_there_stays_and_is_told(given, platfor
     given(cell('ada', 4.0))
     platform.scores['/lineitems/1', '4711']['timestamp'] = '2999-01-01T00:00:00+00:00'
     assert given(cell('ada', 5.0)) == 1
-    assert f'{LESSON}: ada: not taken, it answered 409' in capsys.readouterr().out
+    assert f'{LESSON}: ada: the score was refused: it answered 409' in capsys.readouterr().out
     assert given(cell('ada', 5.0)) == 1
     assert platform.received == [sent(1, '4711', 4.0)]
 
@@ -182,9 +184,8 @@ def test_one_student_who_is_refused_holds_up_nobody(given, platform, capsys):
     platform.users.remove('4711')
     assert given(cell('ada', 4.0), cell('bob', 2.5)) == 1
     said = capsys.readouterr().out
-    assert (
-        f'{LESSON}: ada: not taken, it answered 400: {{"error": "4711 is not enrolled"}}' in said
-    )
+    why = 'it answered 400: {"error": "4711 is not enrolled"}'
+    assert f'{LESSON}: ada: the score was refused: {why}' in said
     assert '1 scores sent, 1 waiting' in said
     platform.users.add('4711')
     assert given(cell('ada', 4.0), cell('bob', 2.5)) == 0
@@ -231,13 +232,13 @@ GOOD = SETTINGS.format(client=CLIENT, address='https://moodle.example.org')
     ('replaced', 'by', 'said'),
     [
         ('https://moodle.example.org/token', 'http://moodle.example.org/token', 'token_url does'),
-        ('issuer', 'isuer', "'isuer' is not known"),
+        ('issuer', 'isuer', "'isuer' is not a name that this file can have"),
         ('client_id = "course-of-the-arm"', '', 'client_id is missing'),
         ('ada = "4711"', 'ada = 4711', 'write ada = "4711"'),
         ('"4712"', '"4711"', 'gives two students the same id'),
         ('[user_ids]', 'students_are_user_ids = 1', 'neither true nor false'),
-        ('"lti_key.pem"', '"none.pem"', 'none.pem can not be read'),
-        ('[user_ids]', '[user_ids', 'can not be read'),
+        ('"lti_key.pem"', '"none.pem"', 'none.pem cannot be read'),
+        ('[user_ids]', '[user_ids', 'cannot be read'),
     ],
 )
 def test_what_is_wrong_in_the_settings_is_said(replaced, by, said, tmp_path):

@@ -42,7 +42,11 @@ def login(text=GOOD):
     ('replaced', 'by', 'said'),
     [
         ('issuer', 'isuer', "'isuer' is not known"),
-        ('issuer = "https://moodle.example.org"', '', 'issuer is missing, or is no text'),
+        (
+            'issuer = "https://moodle.example.org"',
+            '',
+            'issuer is missing, or is not a text in quotes',
+        ),
         ('"AbC123"', '5', 'client_id is missing, or is neither'),
         ('"AbC123"', '[]', 'client_id is missing, or is neither'),
         ('"AbC123"', '["a", ""]', 'client_id is missing, or is neither'),
@@ -50,8 +54,12 @@ def login(text=GOOD):
         ('https://moodle.example.org/mod/lti/certs', 'http://m.org/certs', 'anyone on the way'),
         ('issuer', 'username_claim = "email"\nissuer', 'email needs an email_domain'),
         ('issuer', 'username_claim = "given_name"\nissuer', 'given_name is what people call'),
-        ('issuer', 'username_claim = ""\nissuer', 'username_claim is missing, or is no text'),
-        ('issuer', 'context_id = 2\nissuer', 'context_id is missing, or is no text'),
+        (
+            'issuer',
+            'username_claim = ""\nissuer',
+            'username_claim is missing, or is not a text in quotes',
+        ),
+        ('issuer', 'context_id = 2\nissuer', 'context_id is missing, or is not a text in quotes'),
         ('issuer', 'user_ids = {}\nissuer', '[lti.user_ids] is empty'),
         ('issuer', 'user_ids = {ada = 4711}\nissuer', 'write ada = "4711"'),
         ('issuer', 'user_ids = {ada = "1", bob = "1"}\nissuer', 'gives two users the same id'),

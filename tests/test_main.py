@@ -177,7 +177,7 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
     course = make_course(tmp_path)
     assert main(['release', TOY], course=course) == 0
     released = f'notebooks/{TOY}/{TOY}.ipynb\nnotebooks/index.ipynb\n'
-    moved = f'solutions/{TOY}/{TOY}.ipynb keeps no pictures: notebooks/ has them now\n'
+    moved = f'solutions/{TOY}/{TOY}.ipynb holds no pictures any more: they are in notebooks/ now\n'
     assert capsys.readouterr().out == f'{moved}{released}2 files changed.\n'
     for verb in ('scores', 'feedback'):
         assert main([verb], course=course) == 0

@@ -44,8 +44,8 @@ FAULTS = {
     ),
     'a task in code': (
         {'task': True},
-        'the cell `double-hidden` is a task, and code: make it a markdown cell, or choose another'
-        ' type for it',
+        'the cell `double-hidden` is a task in a code cell: make it a markdown cell, or choose '
+        'another type for it',
     ),
     'an id that is a number': (
         {'grade_id': 5},
@@ -74,7 +74,7 @@ def test_what_is_wrong_in_create_assignment_is_named_with_what_to_do(marks, faul
         ({}, 'cell 1 of the notebook is of another version of nbgrader: '),
         (
             {'schema_version': 3, 'grade': False, 'locked': False},
-            "cell 1 of the notebook lacks 'solution': choose its type anew in Create Assignment",
+            "cell 1 of the notebook lacks 'solution': choose its type again in Create Assignment",
         ),
     ],
 )
@@ -92,7 +92,9 @@ def test_a_check_that_is_a_text_and_an_answer_in_words_without_points_are_named(
     lesson.cells[7].cell_type = 'markdown'
     lesson.cells[8].metadata.nbgrader.grade = False
     as_check, as_answer = metadata_faults(lesson)
-    assert as_check.startswith('the cell `double-hidden` is a check, and a text: make it a code')
+    assert as_check.startswith(
+        'the cell `double-hidden` is a check in a markdown cell: make it a code'
+    )
     assert as_answer.startswith('the cell `explain` is an answer in words, which no check can')
 
 
@@ -100,7 +102,9 @@ def test_a_check_that_is_no_python_is_named_with_its_line():
     lesson = toy_lesson()
     lesson.cells[6].source += '\nif seen =='
     [fault] = metadata_faults(lesson)
-    assert re.match(r'the cell `double-check` is a check that is no Python: line 5: \w', fault)
+    assert re.match(
+        r'the cell `double-check` is a check that is not valid Python: line 5: \w', fault
+    )
 
 
 @pytest.mark.parametrize('use', [release, lambda course: register(course, TOY)])

@@ -37,8 +37,8 @@ def test_what_a_reader_prints_is_no_answer():
         (('operator:mul', 'a', 10**10), 'it takes too much memory'),
         (('json:loads', '[' * 100_000), 'it is nested too deep'),
         (('json:loads', '{'), 'JSONDecodeError: Expecting property name'),
-        (('os:abort',), r'what reads such files crashed on it \(6\)'),
-        (('os:_exit', 3), r'what reads such files crashed on it \(-3\)'),
+        (('os:abort',), r'the program that reads such files crashed on it \(6\)'),
+        (('os:_exit', 3), r'the program that reads such files crashed on it \(-3\)'),
         (('builtins:object',), 'TypeError: Object of type object is not JSON serializable'),
     ],
 )

@@ -98,7 +98,7 @@ def test_moodles_worksheet_needs_no_roster_where_the_numbers_came_with_the_submi
         ['Participant 8003', '王 小明', '5.0', '-'],
     ]
     said = capsys.readouterr().out
-    assert '03_publisher: Cleo waits for a person, in the formgrader' in said
+    assert '03_publisher: Cleo needs manual grading in the formgrader' in said
     assert (
         '03_publisher: Bob has no Moodle number: only work collected from '
         '*Download all submissions* has one. Enter this score by hand, or use --roster FILE.\n'
@@ -189,7 +189,7 @@ def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
     assert [row[0] for row in rows] == ['Student', 'Ann']
     said = capsys.readouterr().out
     assert 'Eve has several rows in roster.csv' in said
-    assert 'bob has a row that others may be meant by, too in roster.csv' in said
+    assert 'bob has a row that may also be of another student in roster.csv' in said
 
 
 @pytest.mark.parametrize(
@@ -197,8 +197,8 @@ def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
     [
         ('moodle', ['ID,Vorname', '1,Ada'], "has no column 'Identifier', 'Full name'"),
         ('moodle', [''], "has no column 'Identifier'"),
-        ('canvas', ['Student,ID,ID,Section'], 'has two columns of one name'),
-        ('canvas', ['Student,ID,Section', '"Ada,1,'], 'is no table in CSV'),
+        ('canvas', ['Student,ID,ID,Section'], 'has two columns of the same name'),
+        ('canvas', ['Student,ID,Section', '"Ada,1,'], 'is not a CSV table'),
         (
             'moodle',
             [
@@ -241,7 +241,7 @@ def test_a_roster_that_does_not_fit_is_refused_in_a_sentence(
         ([TOY, '--format', 'canvas'], f'nothing of {TOY} is graded yet'),
         (
             ['03_publisher', '--format', 'canvas', '--roster', '/nowhere'],
-            'can not be read: No such',
+            'cannot be read: No such',
         ),
     ],
 )

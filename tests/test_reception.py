@@ -152,8 +152,8 @@ def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
         patch.setattr(inbound_module, '_tree', hard)
         assert len(serve_here(course, inbound)) == 4
         assert refused(course) == {
-            'mallory+1': 'it can not be looked at: Too many open files',
-            'eve': 'it can not be looked at, for the grader failed: RecursionError: maximum '
+            'mallory+1': 'it cannot be read: Too many open files',
+            'eve': 'it cannot be read, because the grader failed: RecursionError: maximum '
             'recursion depth exceeded',
         }
         assert serve_here(course, inbound) == []

@@ -284,7 +284,11 @@ def test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced(course
     worked_in = path.read_bytes()
     said = []
     assert release(course, TOY, say=said.append) == [f'{TOY}/{TOY}.ipynb']
-    (line,) = (each for each in said if f'notebooks/{TOY}/{TOY}.ipynb had been worked in' in each)
+    (line,) = (
+        each
+        for each in said
+        if f'notebooks/{TOY}/{TOY}.ipynb was replaced, but contained work' in each
+    )
     copy = Path(line.partition('kept as ')[2])
     assert course.gradebook / 'replaced' in copy.parents
     assert copy.read_bytes() == worked_in
@@ -324,8 +328,8 @@ def test_a_stale_release_and_strange_files_are_found(course):
     (path.parent / 'notes.txt').write_text('old')
     found = stale_or_leaking(course)
     assert [line.split(':')[0] for line in found] == [
-        f'notebooks/{TOY}/{TOY}.ipynb is not what solutions/ gives',
-        f'notebooks/{TOY}/notes.txt comes from no assignment',
+        f'notebooks/{TOY}/{TOY}.ipynb differs from what solutions/ gives',
+        f'notebooks/{TOY}/notes.txt belongs to no assignment',
     ]
     path.write_text(before)
     (path.parent / 'notes.txt').unlink()

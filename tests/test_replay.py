@@ -93,7 +93,7 @@ def test_only_what_was_graded_has_a_seed(graded, capsys):
     finally:
         shutil.rmtree(graded.folder('submitted', 'zoe', ''))
     assert main(['grade', '--seed', 'recorded', '--store'], course=graded) == 1
-    assert 'what is recorded is stored already' in capsys.readouterr().err
+    assert 'scores with recorded seeds are stored already' in capsys.readouterr().err
 
 
 def test_to_store_needs_a_seed(graded, capsys):

@@ -35,7 +35,9 @@ def test_what_is_refused_is_listed_until_it_is_gone_and_looked_into_where_it_com
     (inbound / 'eve_nothing.ipynb').write_text('{}')
     serve_here(course, inbound)
     refused.rename(inbound.parent / refused.name)
-    assert 'gone, so it is listed no more: mallory_nothing.ipynb' in serve_here(course, inbound)
+    assert 'no longer there, so no longer listed: mallory_nothing.ipynb' in serve_here(
+        course, inbound
+    )
     assert [each.entry for each in arrivals(course)] == ['eve_nothing.ipynb']
     (inbound.parent / refused.name).rename(refused)
     serve_here(course, inbound)
@@ -115,7 +117,7 @@ def test_entries_of_one_folder_are_listed_while_another_is_served(course, inboun
     said = serve_here(course, other)
     assert [line.partition(': ')[0] for line in said] == ['not taken, look at it']
     (other / 'of both.ipynb').unlink()
-    assert serve_here(course, other) == ['gone, so it is listed no more: of both.ipynb']
+    assert serve_here(course, other) == ['no longer there, so no longer listed: of both.ipynb']
     assert listed(course) == ['of both.ipynb', 'of one.ipynb']
     assert serve_here(course, inbound) == []
 
@@ -139,7 +141,7 @@ def test_what_came_into_a_folder_that_has_moved_is_not_taken_in_again(
     other.rmdir()
     inbound.rename(other)
     (other / 'gone.ipynb').unlink()
-    assert serve_here(course, other) == ['gone, so it is listed no more: gone.ipynb']
+    assert serve_here(course, other) == ['no longer there, so no longer listed: gone.ipynb']
     assert listed(course) == ['nothing.ipynb', 'zoe']
 
 
@@ -165,5 +167,5 @@ def test_a_queue_of_the_time_before_it_knew_folders_is_gone_on_with(course, inbo
         """)
     assert listed(course) == ['nothing.ipynb', 'zoe']  # as ./course serve --status does
     (inbound / 'nothing.ipynb').unlink()
-    assert serve_here(course, inbound) == ['gone, so it is listed no more: nothing.ipynb']
+    assert serve_here(course, inbound) == ['no longer there, so no longer listed: nothing.ipynb']
     assert listed(course) == ['zoe']

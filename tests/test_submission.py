@@ -225,7 +225,7 @@ FORGED = {
 @pytest.mark.parametrize('said', FORGED.values(), ids=FORGED)
 def test_what_the_process_that_reads_says_is_checked(tmp_path, monkeypatch, said):
     monkeypatch.setattr(reading, 'parse', lambda *arguments, **options: said)
-    with pytest.raises(CourseError, match='gave no notebook') as refused:
+    with pytest.raises(CourseError, match='returned no notebook') as refused:
         read_notebook(tmp_path / NAME)
     assert not isinstance(refused.value, UnreadableSubmission)  # that would be a zero
 

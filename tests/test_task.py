@@ -79,7 +79,7 @@ def test_doing_it_does_not_change_it(work, looked):
 def test_no_file_leaves_its_folder(work, looked, path):
     sent = json.loads(pack(work))
     sent['files'] = {path: ''}
-    with pytest.raises(TaskFailed, match='is no path of a file in a submission'):
+    with pytest.raises(TaskFailed, match='is not the path of a file in a submission'):
         unpack(do(json.dumps(sent)), work)
     assert looked == {}
 
@@ -90,7 +90,7 @@ def test_what_takes_too_long_is_given_up(work, monkeypatch):
 
     monkeypatch.setattr(task, 'execute_exercises', endless)
     monkeypatch.setattr(task, 'SUBMISSION_TIMEOUT_SEC', 0.01)
-    with pytest.raises(TaskFailed, match='it had not come to its end after 0 minutes'):
+    with pytest.raises(TaskFailed, match='it did not end within 0 minutes'):
         unpack(do(pack(work)), work)
 
 
@@ -125,26 +125,32 @@ def fewer_cells(work):
 @pytest.mark.parametrize(
     ('answer', 'why'),
     [
-        (lambda work: [], 'not a result'),
-        (lambda work: {}, 'not a result'),
-        (lambda work: result(work, seconds='1'), 'not a result'),
-        (lambda work: result(work, seconds=-1), 'not a result'),
-        (lambda work: result(work, notebook=[]), 'not a result'),
-        (lambda work: result(work, score=99), 'not a result'),
-        (lambda work: result(work, notebook={'cells': [1], 'metadata': {}}), 'not a notebook'),
-        (lambda work: result(work, notebook={'cells': 1, 'metadata': {}}), 'not a notebook'),
-        (another_text, 'another notebook'),
-        (other_points, 'another notebook'),
-        (fewer_cells, 'another notebook'),
+        (lambda work: [], 'did not return a result'),
+        (lambda work: {}, 'did not return a result'),
+        (lambda work: result(work, seconds='1'), 'did not return a result'),
+        (lambda work: result(work, seconds=-1), 'did not return a result'),
+        (lambda work: result(work, notebook=[]), 'did not return a result'),
+        (lambda work: result(work, score=99), 'did not return a result'),
+        (
+            lambda work: result(work, notebook={'cells': [1], 'metadata': {}}),
+            'returned a damaged notebook',
+        ),
+        (
+            lambda work: result(work, notebook={'cells': 1, 'metadata': {}}),
+            'returned a damaged notebook',
+        ),
+        (another_text, 'returned another notebook'),
+        (other_points, 'returned another notebook'),
+        (fewer_cells, 'returned another notebook'),
     ],
 )
 def test_what_is_no_result_of_it_is_refused(work, answer, why):
     assert unpack(json.dumps(result(work)), work).seconds == 1.0
-    with pytest.raises(TaskFailed, match=f'what came back is {why}'):
+    with pytest.raises(TaskFailed, match=f'the worker {why}'):
         unpack(json.dumps(answer(work)), work)
 
 
 @pytest.mark.parametrize('text', ['', '{', '[' * 100_000, 'NaN'])
 def test_what_is_no_json_is_refused(work, text):
-    with pytest.raises(TaskFailed, match='what came back is not a result'):
+    with pytest.raises(TaskFailed, match='the worker did not return a result'):
         unpack(text, work)

@@ -79,7 +79,7 @@ def test_more_than_two_unstable_tests_fail_a_run(number, why, status, tmp_path, 
     assert record.exists() == bool(number)
     if number:
         assert len(record.read_text().splitlines()) == number
-        assert 'failed beside others and passed alone' in capsys.readouterr().err
+        assert 'failed while others ran and passed alone' in capsys.readouterr().err
 
 
 @pytest.mark.starts

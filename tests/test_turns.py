@@ -53,14 +53,14 @@ def test_what_is_over_a_limit_waits_and_another_lesson_does_not():
     waiting = [arrival(1, 'ada', 'b'), arrival(2, 'ada', 'a')]
     starts = {('ada', 'a'): [NOW - 100, NOW - 50]}
     assert turn(waiting, starts=starts, rules=rules) == 1
-    assert 'it goes on in 58 min' in why_it_waits(starts['ada', 'a'], rules, NOW)
+    assert 'the next is graded in 58 min' in why_it_waits(starts['ada', 'a'], rules, NOW)
     assert why_it_waits([NOW - 3_700, NOW - 50], rules, NOW) == ''
 
 
 def test_what_is_over_the_total_is_kept():
     rules = ResubmissionRules(in_total=2)
     assert why_it_waits([1.0], rules, NOW) == ''
-    assert why_it_waits([1.0, 2.0], rules, NOW).endswith('it is kept')
+    assert why_it_waits([1.0, 2.0], rules, NOW).endswith('it is kept, but not graded')
 
 
 def read(text):

@@ -180,7 +180,9 @@ def test_folders_end_somewhere(source, tmp_path):
 def test_what_must_not_be_read_is_said(source, tmp_path):
     (source / 'a.ipynb').touch(mode=0)
     (source / 'folder').mkdir(mode=0)
-    assert set(seen(source, tmp_path).values()) == {'it must not be read: see its permissions'}
+    assert set(seen(source, tmp_path).values()) == {
+        'this user may not read it: check its permissions'
+    }
 
 
 def test_leftovers_are_no_files_and_refused_paths_are(source, tmp_path):

@@ -136,7 +136,7 @@ def _problem_in(table: dict[str, Any]) -> str:
     optional = [name for name in OTHERS[1:-1] if name in table]
     for name in (*TEXTS, *optional):
         if not isinstance(table.get(name), str) or not table[name]:
-            return f'{name} is missing, or is no text'
+            return f'{name} is missing, or is not a text in quotes'
     ids = table.get('client_id')
     ids = [ids] if isinstance(ids, str) else ids
     if not isinstance(ids, list) or not all(isinstance(each, str) and each for each in ids or [0]):

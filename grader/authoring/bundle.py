@@ -54,6 +54,8 @@ IN_INTERFACES: tuple[str, ...] = ('package.xml', 'CMakeLists.txt', 'srv/*.srv', 
 IN_INTERFACES += ('wheel/*.py', 'wheel/abi3.h', 'wheel/*.whl')
 PACKAGES = {PACKAGE: IN_PACKAGE, INTERFACES: IN_INTERFACES}
 MADE_BY_TOOLS = ('*__pycache__*', '*.egg-info*', 'build/*', 'install/*', 'log/*')
+_A_LINK = 'is a link: put the file itself in its place'
+_MISSING = 'is missing: restore it'
 EXECUTABLE = (f'{FOLDER}/course',)
 
 
@@ -77,7 +79,7 @@ def bundle(course: Course, target: Path) -> Bundle:
     _check_target(target)
     if not (course.root / 'notebooks').is_dir():
         raise CourseError(
-            'no bundle was made: there is no folder notebooks/: run ./course release'
+            'no bundle was made: there is no folder notebooks/: make it with ./course release'
         )
     faults = stale_or_leaking(course)
     files = dict(sorted(_contents(course, faults)))
@@ -106,8 +108,8 @@ def _check_target(target: Path) -> None:
             pass
     except OSError as error:
         raise CourseError(
-            f'no bundle was made: {target} cannot be written, because {above} takes no '
-            f'file ({error.strerror}). Name another file: ./course bundle FILE'
+            f'no bundle was made: {target} cannot be written, because no file '
+            f'can be made in {above} ({error.strerror}). Name another file: ./course bundle FILE'
         ) from None
 
 
@@ -119,14 +121,14 @@ def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:
     for path in _paths(course, faults):
         file = course.root / path
         if file.is_symlink() or not file.is_file():
-            faults.append(f'{path} is {"a link" if file.is_symlink() else "missing"}')
+            faults.append(f'{path} {_A_LINK if file.is_symlink() else _MISSING}')
             continue
         name = 'README.md' if path == f'solutions/{README}' else path
         content = file.read_bytes()
         if path == PINS:
             content, found, _ = content.partition(f'\n{OTHERS}'.encode())
             if not found:
-                faults.append(f'{path} does not say what students need: run .ci/pin.py')
+                faults.append(f'{path} has no line {OTHERS!r}: run .venv/bin/python .ci/pin.py')
             content += b'\n'
         yield f'{FOLDER}/{name}', content
         if name == 'README.md':
@@ -160,7 +162,7 @@ def _paths(course: Course, faults: list[str]) -> Iterator[str]:
                 continue
             if not any(fnmatch(path, pattern) for pattern in listed):
                 faults.append(
-                    f'{package}/{path} is not on the list of what students get '
+                    f'{package}/{path} is not in the list of files for students '
                     '(grader/authoring/bundle.py): add it there, or remove it'
                 )
             elif path not in listed:

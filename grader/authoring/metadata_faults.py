@@ -34,7 +34,7 @@ def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
                 ' .venv/bin/nbgrader update solutions brings it up to date'
             )
         elif lacking := [each for each in _NEEDED if each not in marks]:
-            yield f'{shown} lacks {lacking[0]!r}: choose its type anew in Create Assignment'
+            yield f'{shown} lacks {lacking[0]!r}: choose its type again in Create Assignment'
         if not any(marks.get(each) for each in _TYPES):
             continue
         if not _ID.fullmatch(name) or name != marks.get('grade_id'):
@@ -58,11 +58,11 @@ def _faults(cell: NotebookNode) -> Iterator[str]:
         has = 'no' if points is None else repr(points)
         yield f'has {has} points: write a number from 0 on into Points in Create Assignment'
     if marks.get('task') and cell.cell_type != 'markdown':
-        yield 'is a task, and code: make it a markdown cell, or choose another type for it'
+        yield 'is a task in a code cell: make it a markdown cell, or choose another type for it'
     if cell.cell_type == 'markdown' and not marks.get('task'):
         if marks.get('grade') and not marks.get('solution'):
             yield (
-                'is a check, and a text: make it a code cell, or give it the type'
+                'is a check in a markdown cell: make it a code cell, or give it the type'
                 " 'Manually graded answer' in Create Assignment"
             )
         elif marks.get('solution') and not marks.get('grade'):
@@ -74,7 +74,8 @@ def _faults(cell: NotebookNode) -> Iterator[str]:
         try:
             ast.parse(cell.source)
         except SyntaxError as error:
-            yield f'is a check that is no Python: line {error.lineno}: {error.msg}; correct it'
+            why = f'line {error.lineno}: {error.msg}'
+            yield f'is a check that is not valid Python: {why}; correct it'
 
 
 def _counts(points: object) -> bool:

@@ -61,7 +61,7 @@ def release(
         for name in _names(course, built):
             if (cleaned := _cleaned_source(course, name)) is not None:
                 write_whole(course.source_path(name), cleaned)
-                say(f'{_source_name(name)} keeps no pictures: notebooks/ has them now')
+                say(f'{_source_name(name)} holds no pictures any more: they are in notebooks/ now')
     return [str(path) for path in changed]
 
 
@@ -73,7 +73,7 @@ def stale_or_leaking(course: Course) -> list[str]:
         names = _names(course, built)
         write_editions(course, names, built, metadata=METADATA)
         stale = [
-            f'notebooks/{path} is not what solutions/ gives: run ./course release'
+            f'notebooks/{path} differs from what solutions/ gives: run ./course release'
             for path in files_in(built)
             if _differs(built, course, path)
         ]
@@ -85,7 +85,7 @@ def stale_or_leaking(course: Course) -> list[str]:
     ]
     released = course.root / 'notebooks'
     strange = [
-        f'notebooks/{path} comes from no assignment: remove it'
+        f'notebooks/{path} belongs to no assignment: remove it'
         for path in files_in(released)
         if path not in expected and len(path.parts) > 1 and not course.is_in_package(path)
     ]
@@ -175,7 +175,7 @@ def _keep_work(course: Course, changed: Sequence[Path]) -> Iterator[str]:
     }
     copies = keep_work(released, course.gradebook / 'replaced', metadata=METADATA)
     for name, copy in copies.items():
-        yield f'notebooks/{name} had been worked in: it is kept as {copy}'
+        yield f'notebooks/{name} was replaced, but contained work: it is kept as {copy}'
 
 
 def _names(course: Course, built: Path) -> list[str]:

@@ -25,5 +25,5 @@ def run_doctor(course: Course, asked: argparse.Namespace) -> int:
             f'Its limits are less strict than they could be: {counted.problem}. {counted.remedy}.'
         )
     if problem := slow():
-        print(f'It is slower than it could be: no kernel can be forked here, for {problem}.')
+        print(f'It is slower than it could be: no kernel can be forked here, because {problem}.')
     return 0

@@ -41,7 +41,9 @@ def _run_grade(
     backend: Backend,
 ) -> int:
     if asked.store and asked.seed == RECORDED:
-        raise CourseError('--store needs --seed HEX: what is recorded is stored already')
+        raise CourseError(
+            '--store needs --seed HEX: scores with recorded seeds are stored already'
+        )
     if asked.store and not asked.seed:
         raise CourseError('--store needs --seed HEX: ./course grade alone stores what it finds')
     if asked.seed and not asked.store:

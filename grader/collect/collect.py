@@ -137,7 +137,7 @@ def take(
         return KNOWN, 'nothing new'
     both = (each.handed_in, when) if each.handed_in and when else None
     if not (both and both[0] > both[1]) and came in contents_of_earlier(shelf):
-        return KNOWN, 'as an earlier one, which was replaced since'
+        return KNOWN, 'the same as an earlier one, which a later one has replaced'
     if both and both[0] <= both[1]:
         kept = put_numbered(
             within(

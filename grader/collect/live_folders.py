@@ -91,11 +91,11 @@ class LiveFolder:
             with _closing(os.open(name, _FLAGS, dir_fd=within.descriptor)) as descriptor:
                 yield from self._opened(within, parts, descriptor)
         except PermissionError:
-            yield Incoming(parts, problem='it must not be read: see its permissions')
+            yield Incoming(parts, problem='this user may not read it: check its permissions')
         except OSError as error:  # it was removed or replaced by a link, or the disk is damaged
             if error.errno in MACHINE_FULL:
                 raise
-            yield Incoming(parts, problem=f'it can not be read: {error.strerror}')
+            yield Incoming(parts, problem=f'it cannot be read: {error.strerror}')
 
     def _opened(
         self, within: _Within, parts: tuple[str, ...], descriptor: int

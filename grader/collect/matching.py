@@ -129,14 +129,18 @@ def _handed_in(
 def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
     """Return why a file that is beside notebooks does not belong to any of them."""
     if each.parts[-1] == SECRET:
-        return UntakenFile(each, 'a secret of no submission from the exchange', matters=False)
+        return UntakenFile(
+            each, 'it belongs to the exchange, but to no submission here', matters=False
+        )
     if each.parts[-1] != TIMESTAMP:
         return UntakenFile(
-            each, "it lies beside no notebook, or beside several students'", matters=False
+            each, 'it is beside no notebook, or beside those of several students', matters=False
         )
     if each.archive or in_upload:
         where = 'archive' if each.archive else 'upload'
-        return UntakenFile(each, f"a time in a student's own {where} is not believed")
+        return UntakenFile(
+            each, f'its time is not used: a student can write any time into an {where}'
+        )
     if date_of(each.readable) is None:
         return UntakenFile(each, 'it holds no date')
     return UntakenFile(each, 'it is beside no notebook of one student')
@@ -160,7 +164,7 @@ def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[Matc
             ]
             continue
         others = f'one of {len(several)} notebooks for {assignment} by {student}'
-        reason = f'{others}, and nothing tells which is the latest'
+        reason = f'{others}, and nothing shows which is the latest'
         rest += [UntakenFile(each.notebook, reason) for each in several]
     return ordered
 

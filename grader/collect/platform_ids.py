@@ -30,8 +30,8 @@ class StudentNumbers:
                 self._kept = _checked(json.loads(self._path.read_text(encoding='utf-8')))
             except (ValueError, RecursionError):
                 raise CourseError(
-                    f'{self._path} is damaged: put a copy of it back, or remove it; then equal '
-                    'names are told apart no more by the numbers of earlier downloads'
+                    f'{self._path} is damaged: restore it from a backup, or remove it. If you '
+                    'remove it, students of the same name in earlier downloads can be confused.'
                 ) from None
 
     def of(self, student_id: str, assignment: str) -> dict[str, str]:
@@ -104,5 +104,5 @@ def _checked(kept: Any) -> dict[str, dict[str, dict[str, str]]]:
         for numbers in (of_student.values() if isinstance(of_student, dict) else [None])
     )
     if not fits:
-        raise ValueError('it has another form')
+        raise ValueError('it does not map students to assignments and numbers')
     return kept

@@ -139,7 +139,7 @@ class _Opener:
                 outer,
                 parts=outer.parts or (name,),
                 file=None,
-                problem=f'it is not read, for {why}: ask for a new one, or unpack it by hand',
+                problem=f'it was not read, because {why}: ask for a new one, or unpack it by hand',
             )
             return
         vars(left).update(said['left'])

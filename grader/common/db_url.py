@@ -37,7 +37,7 @@ def configured_db_url(gradebook: Path) -> str | None:
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as error:
-        raise CourseError(f'{path} can not be read: {type(error).__name__}') from None
+        raise CourseError(f'{path} cannot be read: {type(error).__name__}') from None
     try:
         table = tomllib.loads(text)
     except ValueError:  # its message may quote the password

@@ -97,7 +97,7 @@ class _Server:
                 COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
             )  # start_new_session: the calling process handles Ctrl-C
         if self.is_called_off:  # kill() was called before the process was started
-            raise CourseError('nobody waits for the answer any more: run this again')
+            raise CourseError('reading was stopped, because the program ends: run this again')
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         late = threading.Timer(limits.wall_sec + END_GRACE_SEC, self._process.kill)
@@ -111,8 +111,8 @@ class _Server:
             late.cancel()
         if not line.endswith(b'\n'):
             raise CourseError(
-                'the process that reads what students wrote has ended, which no text of theirs '
-                'brings about: see what it printed above, and run this again'
+                'the process that reads student files has ended, and no student file can cause '
+                'that: read what it printed above, then run this again'
             )
         return json.loads(line)
 

@@ -92,7 +92,7 @@ def _why(number: int, limits: Limits) -> str:
         signal.SIGALRM: f'it takes over {limits.wall_sec} s',
         signal.SIGKILL: 'it takes too much memory, or too long an answer',
         -2: 'it takes too much memory',
-    }.get(number, f'what reads such files crashed on it ({number})')
+    }.get(number, f'the program that reads such files crashed on it ({number})')
 
 
 def _packed(answer: dict) -> bytes:

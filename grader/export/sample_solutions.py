@@ -80,5 +80,5 @@ def _refuse_before_the_deadline(course: Course, assignments: Sequence[str]) -> N
             until = last.replace(tzinfo=UTC).astimezone()
             raise CourseError(
                 f'no solution was written: {assignment} can be handed in until '
-                f'{until:%Y-%m-%d %H:%M %Z}. --early writes it all the same'
+                f'{until:%Y-%m-%d %H:%M %Z}. --early writes it anyway'
             )

@@ -25,7 +25,8 @@ from grader.sandbox.limits import (
 )
 
 _MOST_SECONDS = 1e6
-"""Eleven days: longer than any worker lives."""
+"""Eleven days, longer than any worker runs."""
+_NO_RESULT = 'the worker did not return a result of grading'
 _STRING = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)', re.DOTALL)  # may lack its end
 _MADE_BY_A_RUN = ('outputs', 'execution_count', 'metadata')
 """What a run may change in a cell; in `metadata`, only the value of KEY."""
@@ -88,16 +89,14 @@ def read_result(text: str, asked: NotebookNode, *, seed: str) -> tuple[NotebookN
     if the worker says that it failed, or if the answer is not a possible result of grading.
     """
     if len(text) > MAX_RESULT_BYTES:
-        raise TaskFailed(
-            f'what came back is not a result: it has {len(text) / 1e6:.0f} MB, more than '
-            f'{MAX_RESULT_BYTES / 1e6:.0f} MB'
-        )
+        allowed = f'{MAX_RESULT_BYTES / 1e6:.0f} MB are allowed'
+        raise TaskFailed(f'{_NO_RESULT}: it has {len(text) / 1e6:.0f} MB; {allowed}')
     try:
         _refuse_many_parts(text)
         found = json.loads(text, parse_constant=_refuse_constant)
         _RESULT.validate(found)
     except (ValueError, RecursionError, jsonschema.ValidationError) as error:
-        raise TaskFailed(f'what came back is not a result: {_first_line(error)}') from None
+        raise TaskFailed(f'{_NO_RESULT}: {_first_line(error)}') from None
     if 'failed' in found:
         raise TaskFailed(found['failed'], found['traceback'])
     try:
@@ -105,11 +104,11 @@ def read_result(text: str, asked: NotebookNode, *, seed: str) -> tuple[NotebookN
         _expect_valid(notebook, asked)
         same = _unchanged(notebook) == _unchanged(asked)
     except (nbformat.ValidationError, AttributeError, RecursionError) as error:
-        raise TaskFailed(f'what came back is not a notebook: {_first_line(error)}') from None
+        raise TaskFailed(f'the worker returned a damaged notebook: {_first_line(error)}') from None
     if not same:
-        raise TaskFailed('what came back is another notebook')
+        raise TaskFailed('the worker returned another notebook than the one it was given to grade')
     if problem := next(_problems(notebook, asked, seed), ''):
-        raise TaskFailed(f'what came back is no verdict: {problem}')
+        raise TaskFailed(f'the worker returned verdicts that grading cannot give: {problem}')
     return notebook, float(found['seconds'])
 
 
@@ -117,14 +116,14 @@ def _problems(notebook: NotebookNode, asked: NotebookNode, seed: str) -> Iterato
     """Yield what is wrong with what a run has written into a notebook."""
     ours, given = (dict(each.metadata.get(KEY, {})) for each in (notebook, asked))
     if not isinstance(ours.pop('in_sandbox', True), bool):
-        yield 'whether it had a sandbox is no yes or no'
+        yield '`in_sandbox` is neither true nor false'
     if ours != {'notes': []} | given | {'seed': seed}:
-        yield 'it is about another restored notebook, or another seed'
+        yield 'its notes on restored cells, or its seed, are not those that the worker was given'
     for cell, before in zip(notebook.cells, asked.cells, strict=True):
         if cell.cell_type == 'code' and role(before) == 'grade':
             yield from _problems_of_check(cell)
         elif cell.metadata.get(KEY) != before.metadata.get(KEY):
-            yield f'a cell that grades nothing has one: `{grade_id(cell) or cell.get("id")}`'
+            yield f'`{grade_id(cell) or cell.get("id")}` has a verdict, but is not a check'
 
 
 def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
@@ -142,19 +141,19 @@ def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
     results = [output for output in cell.outputs if output.output_type in points_kind]
     others = [out for out in cell.outputs if out.output_type not in ('error', *points_kind)]
     if not all(_tells_only(output) for output in others):
-        yield f'`{name}`: an output that a check cannot have'
+        yield f'`{name}`: it has an output of a kind that no check makes'
         return
     wanted = [verdict['reason']] if verdict['outcome'] == 'failed' else []
     if [error.evalue for error in errors] != wanted:
-        yield f'`{name}`: its outputs do not say what its verdict does'
+        yield f'`{name}`: its error output differs from the reason in its verdict'
         return
     points, earned = cell.metadata.nbgrader.points, verdict.get('earned', 0.0)
     if is_partial != (0.0 < earned < points) or len(results) != is_partial:
-        yield f'`{name}`: {earned:g} of {points:g} points for the outcome {verdict["outcome"]}'
+        yield f'`{name}`: {earned:g} of {points:g} points for {verdict["outcome"]!r}'
         return
     score = {'passed': points, 'partial': earned, 'failed': 0.0}.get(verdict['outcome'])
     if score is not None and determine_grade(cell) != (score, points):
-        yield f'`{name}`: nbgrader would read another score off its outputs'
+        yield f'`{name}`: nbgrader would compute another score from its outputs'
 
 
 def _tells_only(output: NotebookNode) -> bool:
@@ -178,7 +177,7 @@ def _refuse_many_parts(text: str) -> None:
     """Raise ValueError for JSON that would take many times the memory of its text."""
     parts = sum(map(_STRING.sub('', text).count, '{['))
     if parts > MAX_RESULT_PARTS:
-        raise ValueError(f'{parts:,} objects and lists, more than {MAX_RESULT_PARTS:,}')
+        raise ValueError(f'it has {parts:,} objects and lists; {MAX_RESULT_PARTS:,} are allowed')
 
 
 def _expect_valid(notebook: NotebookNode, asked: NotebookNode) -> None:
@@ -187,12 +186,12 @@ def _expect_valid(notebook: NotebookNode, asked: NotebookNode) -> None:
     nbformat's own check then composes a message: 40 s and 1.4 GB for 30,000 outputs.
     """
     if (notebook.nbformat, notebook.nbformat_minor) != (asked.nbformat, asked.nbformat_minor):
-        raise nbformat.ValidationError('it is in another format')
+        raise nbformat.ValidationError('its nbformat version is not that of the lesson')
     get_validator(asked.nbformat, asked.nbformat_minor, name='fastjsonschema').validate(notebook)
 
 
 def _refuse_constant(name: str) -> float:
-    raise ValueError(f'{name} is not a number of JSON')
+    raise ValueError(f'it contains {name}, which JSON does not allow')
 
 
 def _first_line(error: Exception) -> str:

@@ -80,7 +80,7 @@ def unpack(text: str, task: GradingTask) -> Result:
 def _inside(name: str) -> str:
     """Return `name` if it leads to a file inside a folder. Raises ValueError if it does not."""
     if Path(name).is_absolute() or not {*Path(name).parts}.isdisjoint({'..', '.'}):
-        raise ValueError(f'{name!r} is no path of a file in a submission')
+        raise ValueError(f'{name!r} is not the path of a file in a submission')
     return name
 
 
@@ -110,5 +110,5 @@ async def _graded(task: dict) -> dict:
                 )
         except TimeoutError:
             limit = f'{SUBMISSION_TIMEOUT_SEC / 60:.0f} minutes'
-            raise CourseError(f'it had not come to its end after {limit}') from None
+            raise CourseError(f'it did not end within {limit}') from None
     return {'notebook': execution.notebook, 'seconds': time.monotonic() - start}

@@ -37,14 +37,14 @@ _TRIED = {
     'processes of its own (PID namespace)': [
         *_ROOM, '--unshare-pid', '--unshare-ipc', '--unshare-uts', '--proc', '/proc', 'true',
     ],
-    'no namespaces of a student\'s making (bwrap --disable-userns)': [
+    'no further namespaces in it (bwrap --disable-userns)': [
         *_ROOM, '--disable-userns', 'true',
     ],
 }  # fmt: skip
 _CGROUPS = (
-    'Memory is counted twice a second instead, without what the kernel keeps for a submission. A '
-    'cgroup can be had by root, of systemd (in a session of your own, with cgroups of version 2), '
-    'and in a container whose /sys/fs/cgroup can be written to'
+    'Memory is counted twice a second instead, without what the kernel keeps for a submission. To '
+    'get cgroups, grade as root, in a login session of systemd with cgroups of version 2, or in a '
+    'container that may write to /sys/fs/cgroup'
 )
 _WHOLE = 'all of it together, with limits and a filter of system calls'
 
@@ -156,7 +156,7 @@ def _try_all() -> Iterator[Protection]:
     yield Protection(
         'bubblewrap 0.8 or newer',
         f'this one is {said.strip() or "broken"}' if version < OLDEST_BWRAP else '',
-        'Debian 12 and Ubuntu 24.04 bring it',
+        'Install a newer one: Debian 12 and Ubuntu 24.04 have it',
     )
     for name, command in _TRIED.items():
         tried = subprocess.run(command, capture_output=True, text=True)

@@ -43,7 +43,7 @@ class Ending:
     def whose(self, memory: MemoryEvents) -> tuple[Responsibility, str]:
         """Return who is responsible, and the reason as text; '' for an ordinary exit."""
         if self.signal is None:
-            return Responsibility.NOT_SHOWN, 'nobody knows how it ended'
+            return Responsibility.NOT_SHOWN, 'how it ended is unknown'
         if self.signal == 0:
             return Responsibility.STUDENTS, ''
         name = signal_name(self.signal)
@@ -58,11 +58,12 @@ class Ending:
         if name in _OWN:
             return (
                 Responsibility.DOUBTFUL,
-                f'{name} ended it, a signal that Linux sends because of what a process did',
+                f'{name} ended it: Linux sends this signal because of something that the process '
+                'did, such as set a timer',
             )
         return (
             Responsibility.NOT_SHOWN,
-            f'{name} ended it, and no process in its room had sent that signal',
+            f'{name} ended it, but no process in its room sent that signal',
         )
 
 
@@ -73,7 +74,10 @@ def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
             Responsibility.DOUBTFUL,
             f'your code used more than {ROOM_MEMORY_BYTES / 2**20:,.0f} MB',
         )
-    return Responsibility.NOT_SHOWN, 'Linux ended it, because memory ran out outside of its room'
+    return (
+        Responsibility.NOT_SHOWN,
+        'Linux ended it because the machine ran out of memory; its room was within its own limit',
+    )
 
 
 def is_from_outside(number: int) -> bool:

@@ -126,14 +126,17 @@ class GradingRooms:
             responsibility, why = whose_memory(memory)
         elif number := self._student.foreign_signal():
             responsibility = Responsibility.NOT_SHOWN
-            why = f'{signal_name(number)} ended a process in it that nothing in it had sent'
+            why = f'{signal_name(number)} ended it, but no process in its room sent that signal'
         first = not self._doubts
         if responsibility is not Responsibility.STUDENTS:
             self._doubts.append(why)
         if responsibility is Responsibility.NOT_SHOWN or (
             responsibility is Responsibility.DOUBTFUL and first
         ):
-            raise RoomFailure(f'the student room came to an end that is no verdict: {why}')
+            raise RoomFailure(
+                f'a process in the student room ended, and nothing proves that the answer is the '
+                f'cause: {why}'
+            )
         return why
 
     async def _ask_student(self, request: str) -> str:
@@ -186,5 +189,5 @@ class GradingRooms:
     async def _prepare(self, kernel: GradingKernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)
         if not run.ran_to_end:
-            seen = run.error.evalue if run.error else 'it did not end'
+            seen = run.error.evalue if run.error else 'its setup did not run to the end'
             raise RoomFailure(f'the {kernel.room} room could not be made ready: {seen}')

@@ -82,11 +82,13 @@ def read_notebook(path: Path) -> NotebookNode:
         said = parse(f'{raw_notebook.__name__}:read', str(path))
     except ParsingFailed as why:
         raise UnreadableSubmission(
-            f'{path.name} is not read, for {why}: choose "Clear Outputs of All Cells" in '
+            f'{path.name} was not read, because {why}: choose "Clear Outputs of All Cells" in '
             'JupyterLab, save, and submit again.'
         ) from None
     for error in _READ.iter_errors(said):
-        raise CourseError(f'what read {path.name} gave no notebook: {error.json_path}')
+        raise CourseError(
+            f'the program that reads {path.name} returned no notebook: {error.json_path}'
+        )
     if problem := said.get('problem'):
         raise UnreadableSubmission(problem)
     metadata = {KEY: {LANGUAGE: said[LANGUAGE]}} if LANGUAGE in said else {}

@@ -51,7 +51,7 @@ def _to_be_sent(
         )
     for of_one in graded:
         for student in of_one.waiting:
-            say(f'{of_one.assignment}: {student} waits for a person, in the formgrader')
+            say(f'{of_one.assignment}: {student} needs manual grading in the formgrader')
         for each in of_one.final:
             if user := settings.user_id_of(each.student_id):
                 names = each.student_id, of_one.assignment, user
@@ -71,13 +71,15 @@ def _send_waiting(
             platform.send(score)
         except PlatformIsAway as problem:
             queue.note_problem(score, str(problem), answered=False)
-            say(f'the platform is away: {problem}')
+            say(
+                f'the platform did not answer as expected: {problem}. Fix it, then run this again.'
+            )
             break
         except ScoreRefused as problem:
             # 409 after an earlier try: the platform has it; its answer was lost or not waited for
             if not (problem.status == CONFLICT and score.tried):
                 queue.note_problem(score, str(problem), answered=True)
-                say(f'{score.assignment}: {score.student_id}: not taken, {problem}')
+                say(f'{score.assignment}: {score.student_id}: the score was refused: {problem}')
                 continue
         queue.note_sent(score)
         sent += 1

@@ -103,7 +103,7 @@ class LtiService:
         except (ValueError, TypeError, LookupError, AttributeError) as error:
             # the library does not check the form of answers
             raise PlatformIsAway(
-                f'an answer of another form than LTI has ({_in_a_line(error)})'
+                f'an answer that is not in the format of LTI ({_in_a_line(error)})'
             ) from None
 
     def _column_of(self, score: Score) -> LineItem:
@@ -121,7 +121,8 @@ class LtiService:
         if status in UNAUTHORISED:
             self._connector.tokens.clear()
             return PlatformIsAway(
-                f'{what} (see client_id and key_file, and in the platform who may give scores)'
+                f'{what} (check client_id and key_file, and whether the platform lets this tool '
+                'write scores)'
             )
         if status >= 500 or status in LATER or 300 <= status < 400:
             return PlatformIsAway(what)

@@ -61,7 +61,7 @@ def read_settings(course: Course) -> LtiSettings:
             f'there is no {path}, which says how the platform is reached: docs/lti.md shows one'
         ) from None
     except (OSError, ValueError) as error:
-        raise CourseError(f'{path} can not be read: {error}') from None
+        raise CourseError(f'{path} cannot be read: {error}') from None
     if problem := _problem_in(table):
         raise CourseError(f'{path}: {problem} (docs/lti.md shows one that is right)')
     key = _read_key(path.parent / table.pop('key_file'))
@@ -70,11 +70,11 @@ def read_settings(course: Course) -> LtiSettings:
 
 def _problem_in(table: dict[str, Any]) -> str:
     if unknown := sorted(table.keys() - {*TEXTS, *OTHERS}):
-        return f'{unknown[0]!r} is not known'
+        return f'{unknown[0]!r} is not a name that this file can have'
     for name in (*TEXTS, 'audience'):
         value = table.get(name, '' if name == 'audience' else None)
         if not isinstance(value, str) or (name in TEXTS and not value):
-            return f'{name} is missing, or is no text'
+            return f'{name} is missing, or is not a text in quotes'
     for name in ADDRESSES:
         address = urlsplit(table[name])
         if address.scheme != 'https' and address.hostname not in LOCAL:
@@ -83,7 +83,7 @@ def _problem_in(table: dict[str, Any]) -> str:
         return 'students_are_user_ids is neither true nor false'
     ids = table.get('user_ids', {})
     if not isinstance(ids, dict) or not all(isinstance(each, str) for each in ids.values()):
-        return '[user_ids] has an id that is no text: write ada = "4711"'
+        return '[user_ids] has an id that is not a text in quotes: write ada = "4711"'
     if len({*ids.values()}) < len(ids):
         return '[user_ids] gives two students the same id'
     return ''
@@ -95,12 +95,14 @@ def _read_key(path: Path) -> str:
         key = path.read_text(encoding='ascii')
         mode = path.stat().st_mode & 0o777
     except (OSError, ValueError) as error:
-        raise CourseError(f'the key {path} can not be read: {error}') from None
+        raise CourseError(f'the key {path} cannot be read: {error}') from None
     if mode & 0o077:
         raise CourseError(
             f'others may read the key {path} (mode {mode:o}), and could give scores with it: '
             f'chmod 600 {path}'
         )
     if 'PRIVATE KEY' not in key:
-        raise CourseError(f'{path} is no private key in PEM: docs/lti.md says how to make one')
+        raise CourseError(
+            f'{path} is not a private key in PEM format: docs/lti.md says how to make one'
+        )
     return key

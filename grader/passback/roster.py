@@ -29,7 +29,7 @@ def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
     try:
         raw = path.read_bytes()
     except OSError as error:
-        raise CourseError(f'{path} can not be read: {error.strerror}. {how}') from None
+        raise CourseError(f'{path} cannot be read: {error.strerror}. {how}') from None
     if len(raw) > MAX_BYTES:
         raise CourseError(f'{path} has {len(raw):,} bytes: no roster is that long. {how}')
     try:
@@ -38,13 +38,13 @@ def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
         between = ';' if first.count(';') > first.count(',') else ','
         lines = list(csv.reader(io.StringIO(text, newline=''), delimiter=between, strict=True))
     except (UnicodeDecodeError, csv.Error):
-        raise CourseError(f'{path} is no table in CSV and UTF-8. {how}') from None
+        raise CourseError(f'{path} is not a CSV table in UTF-8. {how}') from None
     headings = tuple(heading.strip() for heading in lines[0]) if lines else ()
     lacks = [name for name in needed if name not in headings]
     if lacks:
         raise CourseError(f'{path} has no column {", ".join(map(repr, lacks))}. {how}')
     if len(set(headings)) < len(headings):
-        raise CourseError(f'{path} has two columns of one name. {how}')
+        raise CourseError(f'{path} has two columns of the same name. {how}')
     none = dict.fromkeys(headings, '')  # a line may end early: its other columns are empty
     rows = [none | dict(zip(headings, line, strict=False)) for line in lines[1:] if any(line)]
     return Roster(path, headings, tuple(rows))
@@ -82,7 +82,9 @@ def match(
         if len(rows) == 1 and taken.count(id(rows[0])) == 1:
             found[student] = rows[0]
         else:
-            several = 'several rows' if len(rows) > 1 else 'a row that others may be meant by, too'
+            several = (
+                'several rows' if len(rows) > 1 else 'a row that may also be of another student'
+            )
             has = several if rows else 'no row'
             unclear.append(f'{student} has {has} in {roster.path.name}: give this score by hand')
     return Matches(found, tuple(unclear))

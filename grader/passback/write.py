@@ -48,7 +48,7 @@ def write_platform_scores(
             write_whole(path, made.text)
             paths.append(path)
         for student in scores.waiting:
-            say(f'{scores.assignment}: {student} waits for a person, in the formgrader')
+            say(f'{scores.assignment}: {student} needs manual grading in the formgrader')
         for line in made.left_out:
             say(f'{scores.assignment}: {line}')
     return paths

@@ -54,7 +54,9 @@ def find_similar(course: Course, assignments: Iterable[str]) -> SimilarAnswers:
                     limits=LIMITS,
                 )
             except ParsingFailed as why:
-                problems.append(f'{assignment}, {exercise}: answers were not compared, for {why}')
+                problems.append(
+                    f'{assignment}, {exercise}: answers were not compared, because {why}'
+                )
                 continue
             for each in found:
                 one, other = each['students']

@@ -73,7 +73,7 @@ def _found(proc: Path) -> Hierarchies | NoCgroups:
             folders = {name: _folder(proc, paths[name], name) for name in wanted if name in paths}
             return Hierarchies(1, _writable(folders))
         if '' not in paths:
-            raise NoCgroups('this Linux has none')
+            raise NoCgroups('this Linux has no cgroups')
         top = _folder(proc, '/', '') if holds(proc, '/', '') else None
         folder = _version_2(_folder(proc, paths[''], ''), top)
         controllers = _words(folder / 'cgroup.subtree_control')
@@ -103,7 +103,9 @@ def _writable(folders: dict[str, Path]) -> dict[str, Path]:
     found = {name: path for name, path in folders.items() if os.access(path, os.W_OK | os.X_OK)}
     for name in NEEDED:
         if name not in found:
-            raise NoCgroups(f'{folders.get(name, f"the controller {name}")} is not ours to use')
+            raise NoCgroups(
+                f'{folders.get(name, f"the controller {name}")} cannot be used by this user'
+            )
     return found
 
 
@@ -116,9 +118,9 @@ def _version_2(own: Path, top: Path | None) -> Path:
     elif os.geteuid() == 0 and top is not None and not SYSTEMD.is_dir():
         folder = top
     else:
-        raise NoCgroups(f'{own} is not ours to use: systemd has not delegated it')
+        raise NoCgroups(f'{own} cannot be used by this user: systemd has not delegated it')
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise NoCgroups(f'{folder} is not ours to use')
+        raise NoCgroups(f'{folder} cannot be used by this user')
     if folder == own and (folder / 'cgroup.type').exists():  # the root may have processes
         _move_to_graders(folder)
     _switch_on(folder)

@@ -47,7 +47,11 @@ class Holder:
                     await asyncio.sleep(0.002)
         if not line.strip().isdigit():
             ended = process.poll()
-            silent = 'it did not answer' if ended is None else f'it ended with {ended}, silently'
+            silent = (
+                'it did not answer'
+                if ended is None
+                else f'it ended with {ended}, without a message'
+            )
             _kill(process)
             said = process.stderr.read(10_000).decode(errors='replace').strip()
             raise RoomFailure(f'the sandbox could not be made: {said or silent}')

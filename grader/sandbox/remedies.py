@@ -66,15 +66,15 @@ def _about_a_filter(call: str, error: str) -> str:
             f'{CONTAINERS}'
         )
     return (
-        f'{what}: if systemd started this, SystemCallFilter= or RestrictNamespaces= of its unit '
-        'says so; leave them out'
+        f'{what}: if systemd started this, remove SystemCallFilter= and RestrictNamespaces= from '
+        'its unit'
     )
 
 
 def _about_proc() -> str:
     masked = sorted(_mounted_below_proc())
     named = ', '.join(masked[:3]) + (', …' if len(masked) > 3 else '')
-    what = f'/proc is masked ({named or "in part"}), so that Linux lets no sandbox have its own'
+    what = f'/proc is masked ({named or "in part"}), so Linux does not let a sandbox mount its own'
     if _in_container():
         return (
             f'{what}: start the container with --security-opt systempaths=unconfined (Docker) or '

@@ -37,5 +37,5 @@ class Gone:
         for entry in sorted(refused - there):
             if desk.queue.forget(entry):
                 desk.seen.pop(entry, None)
-            desk.say(printable(f'gone, so it is listed no more: {entry}'))
+            desk.say(printable(f'no longer there, so no longer listed: {entry}'))
         return bool(refused - there)

@@ -129,11 +129,11 @@ def _with_problem(folder: Path, name: str, seen: str | None, error: Exception) -
     if fingerprint == seen:
         return None
     if isinstance(error, PermissionError):
-        problem = 'it must not be read: see its permissions'
+        problem = 'this user may not read it: check its permissions'
     elif isinstance(error, OSError):
-        problem = f'it can not be looked at: {error.strerror}'
+        problem = f'it cannot be read: {error.strerror}'
     else:
-        problem = f'it can not be looked at, for {noted(name, error)}'
+        problem = f'it cannot be read, because {noted(name, error)}'
     when = (utc_of(changed) if 0 < changed <= now else None) or datetime.now(UTC)
     is_whole = changed <= now - QUIET_SEC
     return Entry(name, fingerprint, when, is_whole, owner=_named(name), problem=problem)

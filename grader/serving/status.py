@@ -97,7 +97,7 @@ def _summary(done: list[Arrival], counts: Mapping[str, int]) -> str:
     seconds = sorted(each.ended - each.arrived for each in done)
     half, most = (seconds[min(len(seconds) - 1, int(p * len(seconds)))] for p in (0.5, 0.95))
     return (
-        f'{said}. From a file in its place to its feedback, the last {len(done)}: '
+        f'{said}. From arrival to feedback, for the last {len(done)}: '
         f'half within {half:.1f} s, 95 % within {most:.1f} s.'
     )
 

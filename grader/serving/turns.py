@@ -47,13 +47,16 @@ def replaced_by(chosen: Arrival, waiting: Sequence[Arrival]) -> list[Arrival]:
 def why_it_waits(starts: Sequence[float], rules: ResubmissionRules, now: float) -> str:
     """Return why the rules do not allow one more grading now, or ''."""
     if rules.in_total is not None and len(starts) >= rules.in_total:
-        return f'{len(starts)} were graded, and the course grades {rules.in_total}: it is kept'
+        return (
+            f'{len(starts)} were graded, and the course grades at most {rules.in_total}: it is '
+            'kept, but not graded'
+        )
     recent = [at for at in starts if at > now - HOUR_SEC]
     if rules.per_hour is not None and len(recent) >= rules.per_hour:
         minutes = (recent[-rules.per_hour] + HOUR_SEC - now) / 60
         return (
-            f'{len(recent)} were graded in the last hour, and the course grades '
-            f'{rules.per_hour}: it goes on in {max(1, round(minutes))} min'
+            f'{len(recent)} were graded in the last hour, and the course grades at '
+            f'most {rules.per_hour}: the next is graded in {max(1, round(minutes))} min'
         )
     return ''
 

@@ -68,7 +68,7 @@ def read_deadlines(
         return _understood(tomllib.loads(content.decode()), assignments)
     except (ValueError, _Wrong) as error:
         raise CourseError(
-            f'{path}: {error}: see the example in docs/for-instructors.md, Due dates'
+            f'{path}: {error}. Correct it: docs/for-instructors.md, Due dates, has an example.'
         ) from None
 
 
@@ -79,8 +79,8 @@ def extended_for_nobody(course: Course) -> list[str]:
     """
     found = deadlines(course.gradebook) or Deadlines()
     return [
-        f'{FILE} extends {assignment} for {printable(student)}, who has handed in nothing: is '
-        'that the name?'
+        f'{FILE} extends {assignment} for {printable(student)}, who has not handed it in yet: '
+        'check that the name is right'
         for assignment, student in sorted(found.extended)
         if not course.folder('submitted', student, assignment).is_dir()
     ]
@@ -93,18 +93,18 @@ class _Wrong(Exception):
 def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
     due, extended, late = (_table(said, name) for name in ('due', 'extended', 'late'))
     if strange := [*(said.keys() - _TABLES), *(late.keys() - _POLICY.keys())]:
-        raise _Wrong(f'{strange[0]!r} is not known')
+        raise _Wrong(f'{strange[0]!r} is not a name that this file can have')
     for assignment in (*due, *extended):
         if assignments is not None and assignment not in assignments:
             raise _Wrong(f'there is no assignment {assignment!r}')
     for assignment in extended:
         if assignment not in due:
-            raise _Wrong(f'{assignment} is extended, and has no due date')
+            raise _Wrong(f'{assignment} is in [extended], but has no date in [due]')
     for key, value in late.items():
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise _Wrong(f'{key} is no number')
+            raise _Wrong(f'{key} must be a number')
         if not 0 <= value <= _POLICY[key]:
-            raise _Wrong(f'{key} = {value} is out of range')
+            raise _Wrong(f'{key} = {value} is out of range: expected 0 to {_POLICY[key]:g}')
     return Deadlines(
         due={assignment: _time(assignment, value) for assignment, value in due.items()},
         extended={
@@ -120,11 +120,13 @@ def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
 def _table(said: dict, name: str) -> dict:
     table = said.get(name, {})
     if not isinstance(table, dict):
-        raise _Wrong(f'[{name}] is no table')
+        raise _Wrong(f'{name} must be a table, not a value')
     return table
 
 
 def _time(what: str, value: object) -> datetime:
     if not isinstance(value, datetime) or value.tzinfo is None:
-        raise _Wrong(f'{what} has no time with its zone, such as 2026-11-30T23:59:00+01:00')
+        raise _Wrong(
+            f'{what} must have a date and a time with its zone, such as 2026-11-30T23:59:00+01:00'
+        )
     return value.astimezone(UTC).replace(tzinfo=None)

@@ -26,11 +26,11 @@ class ResubmissionRules:
 def read_rules(table: dict[str, Any]) -> ResubmissionRules:
     """Return the rules in a table. Raises ValueError if something in it is wrong."""
     if strange := sorted(table.keys() - {'per_hour', 'in_total', 'hidden_inputs'}):
-        raise ValueError(f'{strange[0]!r} is not known')
+        raise ValueError(f'{strange[0]!r} is not a name that [resubmissions] can have')
     for key in ('per_hour', 'in_total'):
         value = table.get(key, 1)
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise ValueError(f'{key} is no whole number from 1 on')
+            raise ValueError(f'{key} must be a whole number, 1 or more')
     if table.get('hidden_inputs', KEPT) not in (KEPT, ANEW):
-        raise ValueError(f'hidden_inputs is neither "{KEPT}" nor "{ANEW}"')
+        raise ValueError(f'hidden_inputs must be "{KEPT}" or "{ANEW}"')
     return ResubmissionRules(**table)

@@ -73,10 +73,10 @@ def _expect_nothing_shared() -> None:
     """
     threads = len(os.listdir('/proc/self/task'))
     if threads != 1 or threading.active_count() != 1:
-        raise RuntimeError(f'there are {threads} threads, and none but one would be forked')
+        raise RuntimeError(f'there are {threads} threads, but a fork copies only one')
     python = Path('/proc/self/exe')
     if python.stat().st_uid == os.geteuid() != 0 and not os.readlink(python).startswith('/memfd:'):
-        raise RuntimeError(f'{python.resolve()} is the own file of whom its kernels would be')
+        raise RuntimeError(f'{python.resolve()} belongs to this user: kernels could change it')
     for _, _, rights, path in _shared():
         if rights != 'r--s' or not path.startswith(('/usr/', sys.prefix, sys.base_prefix)):
             raise RuntimeError(f'an import has made shared memory: {rights} {path}')
