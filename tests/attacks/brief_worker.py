@@ -1,4 +1,4 @@
-"""A worker process that waits for a cell half as long: many an attack takes all that it gets."""
+"""A worker process that gives a cell half as much time, because many attacks use all of it."""
 
 import sys
 

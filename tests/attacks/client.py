@@ -1,4 +1,4 @@
-"""An honest client; what answers of the name `client_…` change in it is put behind it."""
+"""An honest client; the code of an attack `client_…` is appended to it."""
 
 from geometry_msgs.msg import Point
 from rclpy.node import Node

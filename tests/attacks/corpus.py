@@ -12,7 +12,7 @@ from grader.course import Course
 
 FOLDER = Path(__file__).parent / 'answers'
 ANSWERS = {path.stem: path for path in sorted(FOLDER.glob('*.py'))}
-"""Attacks that are an answer: one to the lesson of their first word in KINDS, or to the toy's."""
+"""Attacks in an answer: to the lesson that KINDS gives for their first word, or to the toy's."""
 OTHERS = {
     name: function
     for name, function in vars(notebooks).items()
@@ -31,11 +31,11 @@ KINDS = {
     'rate': (PARAMETERS, 'adjustable_rate', 'rate.py'),
     'arms': (PARAMETERS, 'two_arms', ''),
 }
-"""The lesson and its exercise that attacks are an answer to, and the honest code before them."""
+"""The lesson and the exercise that an attack answers, and the honest code that comes before it."""
 HONEST = 'def double(x):\n    return x + x'
 HONEST_ROBOT = FOLDER.parents[1] / 'submissions' / '03_publisher-pass-steady_clock_timer.ipynb'
 CANARY = 'hidden canary'
-"""Stands in the toy lesson's hidden test."""
+"""A text in the toy lesson's hidden test."""
 LEFT = ('loaded_by_the_grader', 'evil_kernel', 'slipped')
 """Files under /tmp that an attack would leave."""
 
@@ -50,14 +50,14 @@ def _kind(name: str) -> tuple[str, str, str]:
 
 
 def earns(name: str) -> float:
-    """Return the points that an attack gets for the honest work in it."""
+    """Return the points that an attack earns with the honest code in it."""
     first = ANSWERS[name].read_text(encoding='utf-8').splitlines()[0] if name in ANSWERS else ''
     said = re.search(r'# earns (\d)', first)
     return float(said[1]) if said else 0.0
 
 
 def source_of(name: str) -> str:
-    """Return the code of an attack that is an answer, behind the honest code that it changes."""
+    """Return the code of an attack in an answer, appended to the honest code that it changes."""
     source = ANSWERS[name].read_text(encoding='utf-8')
     honest = _kind(name)[2]
     before = Path(__file__).with_name(honest).read_text(encoding='utf-8') if honest else ''
@@ -83,7 +83,7 @@ def attack(
 def hand_in(
     course: Course, student: str, answer: str, assignment: str, exercise: str = ''
 ) -> None:
-    """Hand in a lesson with one answer typed in: that of an exercise, if it has several."""
+    """Hand in a lesson with one answer filled in; if it has several exercises, say which."""
     notebook = course.release(assignment)
     (cell,) = (
         cell
@@ -99,7 +99,7 @@ def hand_in(
 
 
 def hand_in_honestly(course: Course, student: str, assignment: str = TOY) -> None:
-    """Hand in what earns all points."""
+    """Hand in an answer that earns all points."""
     if assignment == TOY:
         hand_in(course, student, HONEST, TOY)
         return
@@ -109,7 +109,7 @@ def hand_in_honestly(course: Course, student: str, assignment: str = TOY) -> Non
 
 
 def add_robot_lessons(course: Course) -> None:
-    """Let a course of the toy lesson have those with nodes, too."""
+    """Add the lessons with nodes to a course that has only the toy lesson."""
     for step in ('solutions', 'notebooks'):
         for lesson in (ROBOT, SERVICES, ACTIONS, PARAMETERS):
             (course.root / step / lesson).symlink_to(Path(__file__).parents[2] / step / lesson)

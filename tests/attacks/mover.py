@@ -1,4 +1,4 @@
-"""An honest server of the action; what answers of the name `mover_…` change in it is behind it."""
+"""An honest server of the action; the code of an attack `mover_…` is appended."""
 
 import math
 

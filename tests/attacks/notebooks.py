@@ -1,4 +1,4 @@
-"""Attacks that are no answers: notebooks with edited cells, and files beside a notebook.
+"""Attacks outside of the answers: notebooks with edited cells, and files beside a notebook.
 
 Each function takes the released toy lesson, without an answer, and the folder in which it is
 handed in; its first line says what it tries. None of them earns a point.
@@ -31,14 +31,14 @@ def raises_its_points(notebook: NotebookNode, folder: Path) -> None:
 
 
 def edits_its_checks(notebook: NotebookNode, folder: Path) -> None:
-    """Writes checks that pass over those that are there."""
+    """Replaces the checks by checks that always pass."""
     for cell in notebook.cells:
         if cell.metadata.get('nbgrader', {}).get('grade'):
             cell.source = 'print("passed")'
 
 
 def is_made_of_magics(notebook: NotebookNode, folder: Path) -> None:
-    """Answers in magics alone: IPython reads a cell anew for each, and gives up in the end."""
+    """Answers with magics only: IPython parses the cell again for each, and finally gives up."""
     for cell in notebook.cells:
         if cell.metadata.get('nbgrader', {}).get('solution') and cell.cell_type == 'code':
             cell.source = 'x = %who\n' * 600
@@ -62,7 +62,7 @@ def repeats_its_ids(notebook: NotebookNode, folder: Path) -> None:
 
 
 def claims_to_be_graded(notebook: NotebookNode, folder: Path) -> None:
-    """Carries the marks with which the grader writes down a verdict."""
+    """Has the metadata in which the grader stores a verdict."""
     passed = {'outcome': 'passed', 'reason': '', 'role': 'grade', 'notes': []}
     notebook.metadata[KEY] = passed
     for cell in notebook.cells:
@@ -70,13 +70,13 @@ def claims_to_be_graded(notebook: NotebookNode, folder: Path) -> None:
 
 
 def asks_for_a_kernel_of_its_own(notebook: NotebookNode, folder: Path) -> None:
-    """Names a kernel, and brings one."""
+    """Names a kernel of its own, and brings its kernelspec."""
     notebook.metadata['kernelspec'] = {'name': 'evil', 'display_name': 'evil', 'language': 'sh'}
     (folder / 'kernel.json').write_text(json.dumps({'argv': ['touch', '/tmp/evil_kernel']}))
 
 
 def brings_modules_of_ours(notebook: NotebookNode, folder: Path) -> None:
-    """Hands in modules by the names of those that grading imports."""
+    """Hands in modules that have the names of modules that grading imports."""
     evil = 'import builtins; builtins.AssertionError = Warning'
     names = ('rclpy', 'ipykernel_launcher', 'my_robot_basics', 'sitecustomize', 'usercustomize')
     for name in (*names, 'json', 'numpy', 'grader', 'IPython'):
@@ -85,7 +85,7 @@ def brings_modules_of_ours(notebook: NotebookNode, folder: Path) -> None:
 
 
 def brings_modules_that_nobody_has(notebook: NotebookNode, folder: Path) -> None:
-    """Hands in modules that libraries look for and do without, to end the kernel as it starts."""
+    """Hands in optional modules that libraries try to import, to end the kernel as it starts."""
     for name in ('regex', 'atomicwrites', 'future_builtins', 'debugpy', 'ujson', 'uvloop'):
         (folder / f'{name}.py').write_text('import os; os._exit(0)')
 

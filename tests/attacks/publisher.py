@@ -1,4 +1,4 @@
-"""An honest publisher; what answers of the name `robot_…` do besides is put behind it."""
+"""An honest publisher; the code of an attack `robot_…` is appended to it."""
 
 import random
 

@@ -1,4 +1,4 @@
-"""An honest publisher with a rate; what answers of the name `rate_…` change in it is behind it."""
+"""An honest publisher with a rate; the code of an attack `rate_…` is appended to it."""
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node

@@ -1,4 +1,4 @@
-"""An honest client of the action; what answers of the name `sender_…` change is put behind it."""
+"""An honest client of the action; the code of an attack `sender_…` is appended."""
 
 from rclpy.action import ActionClient
 from rclpy.node import Node

@@ -1,4 +1,4 @@
-"""An honest server; what answers of the name `server_…` change in it is put behind it."""
+"""An honest server; the code of an attack `server_…` is appended to it."""
 
 import math
 

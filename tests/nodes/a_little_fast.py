@@ -1,4 +1,4 @@
-"""At 5.13 Hz: within what the wall clock allows, and not 5 Hz."""
+"""At 5.13 Hz: within the tolerance on the wall clock, but not 5 Hz."""
 
 from five_hz import FiveHz, spin
 

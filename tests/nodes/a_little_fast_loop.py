@@ -1,4 +1,4 @@
-"""Publishes from a loop that sleeps for 0.195 s: a busy machine makes nearly 5 Hz of it."""
+"""Publishes from a loop that sleeps for 0.195 s: on a busy machine, the rate is nearly 5 Hz."""
 
 from five_hz import spin
 from sleep_loop import SleepLoop

@@ -1,4 +1,4 @@
-"""At a period of 0.195 s, and nobody can switch its clock from outside."""
+"""Has a period of 0.195 s and no parameter services, so a check cannot switch its clock."""
 
 from five_hz import FiveHz, spin
 

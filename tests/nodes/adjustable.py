@@ -1,4 +1,4 @@
-"""Publishers whose rate is a parameter: in every honest way, and in each way that goes wrong."""
+"""Publishers whose rate is a parameter: right in several ways, and wrong in several."""
 
 import contextlib
 import threading
@@ -15,7 +15,7 @@ REFUSED = {'successful': False, 'reason': 'rate_hz is from 1 to 50'}
 
 
 class Adjustable(FiveHz):
-    """Judges in the one callback, and makes another timer there: what most will write."""
+    """Checks the value in one callback, and makes a new timer there, as most students do."""
 
     default = 5.0
     descriptor = ParameterDescriptor()

@@ -1,4 +1,4 @@
-"""Five messages once a second: as many as at 5 Hz, and no rate."""
+"""Five messages once a second: as many as at 5 Hz, but unevenly."""
 
 from five_hz import FiveHz, spin
 

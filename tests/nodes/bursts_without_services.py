@@ -1,4 +1,4 @@
-"""Five messages once a second, and nobody can switch its clock from outside."""
+"""Five messages once a second; a check cannot switch its clock, without parameter services."""
 
 from bursts import Bursts
 from five_hz import spin

@@ -1,4 +1,4 @@
-"""Computes for 0.1 s in each callback of its 5 Hz timer: slow to answer, and right."""
+"""Computes for 0.1 s in each callback of its 5 Hz timer: slow to answer, but right."""
 
 import time
 

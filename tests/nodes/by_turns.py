@@ -1,4 +1,4 @@
-"""Publishes 0.1 s and 0.3 s after the message before, by turns: 5 messages a second, unevenly."""
+"""Publishes alternately 0.1 s and 0.3 s after the last message: 5 a second, but unevenly."""
 
 from five_hz import FiveHz, spin
 

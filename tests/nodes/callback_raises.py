@@ -1,4 +1,4 @@
-"""Raises in the timer's callback: its executor dies of it."""
+"""Raises an exception in the timer's callback, which ends the executor."""
 
 from five_hz import FiveHz, spin
 

@@ -1,4 +1,4 @@
-"""Publishes degrees where radians are asked."""
+"""Publishes degrees instead of radians."""
 
 from five_hz import FiveHz, spin
 

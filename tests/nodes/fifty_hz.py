@@ -1,4 +1,4 @@
-"""Publishes at 50 Hz, faster than the clock's first step."""
+"""Publishes at 50 Hz, more often than the first step of the simulated clock."""
 
 from five_hz import FiveHz, spin
 

@@ -1,4 +1,4 @@
-"""Publishes at 5 Hz bytes that are no message."""
+"""Publishes, at 5 Hz, bytes that are not a valid message."""
 
 from five_hz import FiveHz, spin
 

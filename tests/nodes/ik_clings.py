@@ -1,4 +1,4 @@
-"""Warns of a target out of reach, and all the same says its last answer once more."""
+"""Warns of a target out of reach, but also logs its last answer again."""
 
 from five_hz import spin
 from ik_solver import IKSolver

@@ -1,4 +1,4 @@
-"""Prints its solutions: nobody else on the robot can read that."""
+"""Prints its solutions, which no other node can read."""
 
 from five_hz import spin
 from ik_solver import IKSolver

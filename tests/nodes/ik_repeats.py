@@ -1,4 +1,4 @@
-"""Keeps the last target, and says on a timer what there is to say of it, again and again."""
+"""Keeps the last target, and logs its solutions or its warning again on each tick of a timer."""
 
 from five_hz import spin
 from ik_solver import IKSolver

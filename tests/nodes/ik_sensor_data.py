@@ -1,4 +1,4 @@
-"""Listens BEST_EFFORT, as one does to sensors: what it misses is not sent again."""
+"""Subscribes with BEST_EFFORT, as for sensors: a lost message is not sent again."""
 
 from five_hz import spin
 from geometry_msgs.msg import Point

@@ -1,4 +1,4 @@
-"""Warns of a target out of reach, and all the same answers: with the arm stretched towards it."""
+"""Warns of a target out of reach, but also logs the pose of an arm stretched towards it."""
 
 from math import atan2, degrees
 

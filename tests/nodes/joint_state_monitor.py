@@ -1,4 +1,4 @@
-"""Passes on what a BEST_EFFORT sensor and a latched description say; asks for what is offered."""
+"""Relays a BEST_EFFORT sensor and a latched description, with QoS that matches what is offered."""
 
 import contextlib
 

@@ -1,4 +1,4 @@
-"""Looks every 10 ms whether 0.17 s have passed on its clock, which is 5.88 Hz."""
+"""Checks every 10 ms whether 0.17 s have passed on its clock, which is 5.88 Hz."""
 
 from five_hz import FiveHz, spin
 

@@ -1,4 +1,4 @@
-"""Asks for the description as for any topic: what was said before it joined is not for it."""
+"""Subscribes to the description with VOLATILE: it misses what was published before it joined."""
 
 from joint_state_monitor import JointStateMonitor, spin
 

@@ -1,4 +1,4 @@
-"""Sends poses to /move_arm, cancels at an obstacle, tells the outcome: the exercise's answer."""
+"""Sends poses to /move_arm, cancels at obstacles, publishes the outcome: the exercise's answer."""
 
 from action_msgs.msg import GoalStatus
 from five_hz import spin

@@ -1,4 +1,4 @@
-"""Publishes 0.15 s and 0.25 s after the message before, by turns, whatever /clock says."""
+"""Publishes alternately 0.15 s and 0.25 s after the last message, and ignores /clock."""
 
 from five_hz import FiveHz, spin
 from rclpy.clock import Clock, ClockType

@@ -1,4 +1,4 @@
-"""Publishes 0.15 s and 0.25 s after the message before, by turns, on the clock of the robot."""
+"""Publishes alternately 0.15 s and 0.25 s after the last message, by the robot's clock."""
 
 from five_hz import spin
 from nearly_by_turns import NearlyByTurns

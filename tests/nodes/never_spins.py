@@ -1,4 +1,4 @@
-"""A perfect node that nobody spins."""
+"""A correct node that is never spun."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""Nobody can switch its clock from outside."""
+"""Has no parameter services, so a check cannot switch its clock."""
 
 from five_hz import FiveHz, spin
 

@@ -1,4 +1,4 @@
-"""Publishes at 1 Hz where 5 Hz is asked: the seed lesson's own period."""
+"""Publishes at 1 Hz instead of 5 Hz."""
 
 from five_hz import FiveHz, spin
 

@@ -1,4 +1,4 @@
-"""Publishes nothing, of another type than `everything.py` has on the same topic."""
+"""Publishes nothing; its publisher has another type than that of `everything.py` on the topic."""
 
 from five_hz import spin
 from rclpy.node import Node

@@ -1,4 +1,4 @@
-"""Two messages every 0.4 s: the nearest to 5 Hz that bursts can be."""
+"""Two messages every 0.4 s: no other bursts come as close to 5 Hz."""
 
 from five_hz import FiveHz, spin
 

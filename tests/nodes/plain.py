@@ -1,4 +1,4 @@
-"""Nodes in one process, as anybody writes them: `python plain.py NODES [CONTEXTS]`.
+"""Ordinary nodes in one process: `python plain.py NODES [CONTEXTS]`.
 
 Node n publishes on /topic_n, subscribes to the next one's topic and has the service /service_n.
 Prints a line when all are made.

@@ -1,4 +1,4 @@
-"""Programs that visit targets, right in whatever way, and wrong: `players.py VARIANT --ros-args`.
+"""Programs that visit targets, right and wrong in several ways: `players.py VARIANT --ros-args`.
 
 The first of them is the exercise's answer.
 """
@@ -95,7 +95,7 @@ class Callbacks(Program):
 
 
 class Awaits(Program):
-    """One coroutine, which no callback group holds back."""
+    """One coroutine, which no callback group blocks."""
 
     async def visit(self, x, y):
         answer = await self.ask(x, y)
@@ -118,7 +118,7 @@ class Awaits(Program):
 
 
 class Threads(Program):
-    """Blocking calls in a thread, and an executor with threads enough."""
+    """Blocking calls in a thread, and an executor with enough threads."""
 
     def wait_for(self, future):
         over = threading.Event()
@@ -152,7 +152,7 @@ class BlocksInAGroup(Threads):
 
 
 class AsksAhead(Program):
-    """Asks for all targets first, as nothing forbids."""
+    """Requests all solutions first, which nothing forbids."""
 
     def play(self):
         self.wait_for_servers()

@@ -1,4 +1,4 @@
-"""Publishes at 5 Hz, and takes no change of any parameter: not even another clock."""
+"""Publishes at 5 Hz, and refuses to change any parameter, even `use_sim_time`."""
 
 from five_hz import FiveHz, spin
 from rcl_interfaces.msg import SetParametersResult

@@ -15,11 +15,11 @@ from my_robot_basics import live
 FOLDER = Path(__file__).parent
 TIMEOUT_SEC = 5.0
 STOPS = []
-"""What ends the threads that nodes have made for themselves."""
+"""Functions that end the threads that nodes have started."""
 
 
 def stop_all() -> None:
-    """End the threads of nodes first: they would ask nodes that are gone."""
+    """End these threads before the nodes: they would use nodes that are destroyed."""
     while STOPS:
         STOPS.pop()()
     live.stop()

@@ -1,4 +1,4 @@
-"""Services in a namespace, one of them hidden, that give back what they are asked."""
+"""Services in a namespace, one of them hidden, that send back what they are sent."""
 
 import contextlib
 

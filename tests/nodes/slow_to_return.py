@@ -1,4 +1,4 @@
-"""Publishes at 5 Hz; takes 3 s to go back from the robot's clock to wall time."""
+"""Publishes at 5 Hz; takes 3 s to switch back from the robot's clock to wall time."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""A timer on a steady clock: 5 Hz, whatever /clock says."""
+"""A timer on a steady clock: 5 Hz, independent of /clock."""
 
 from five_hz import FiveHz, spin
 from rclpy.clock import Clock, ClockType

@@ -1,4 +1,4 @@
-"""Names the joints in the other order, and so their positions: right all the same."""
+"""Gives joints and positions in the other order, which is right, too."""
 
 from five_hz import FiveHz, spin
 

@@ -1,4 +1,4 @@
-"""Publishes from a thread and never spins: its parameter services answer nobody."""
+"""Publishes from a thread and never spins: its parameter services never respond."""
 
 import time
 

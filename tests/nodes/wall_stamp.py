@@ -1,4 +1,4 @@
-"""Stamps with the system's time, whatever the node's clock says."""
+"""Stamps with the system's time, not the node's clock."""
 
 from five_hz import FiveHz, spin
 from rclpy.clock import Clock, ClockType

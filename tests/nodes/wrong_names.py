@@ -1,4 +1,4 @@
-"""Names the joints as no URDF of the course does."""
+"""Gives the joints names that are not in the URDF."""
 
 from five_hz import FiveHz, spin
 

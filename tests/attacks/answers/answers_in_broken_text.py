@@ -1,4 +1,4 @@
-"""Answers a check with half characters, zero bytes and escapes that are none."""
+"""Answers a check with lone surrogates, zero bytes and invalid escape sequences."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Answers a check with escapes that can be read in more ways than anybody has time for."""
+"""Answers a check with escapes that a regular expression could match in too many ways."""
 
 from my_robot_basics.exchange import responder
 

@@ -1,4 +1,4 @@
-"""Gives no rule: nodes of the notebook have the names, the topics and the poses instead."""
+"""Gives no remap rule: nodes in the notebook have the names, topics and poses instead."""
 
 import math
 import random

@@ -1,4 +1,4 @@
-"""Wants to live on where memory runs out, and writes so wherever it may."""  # earns 3
+"""Tries to be spared when memory runs out, and writes that into every file it may."""  # earns 3
 
 import glob
 

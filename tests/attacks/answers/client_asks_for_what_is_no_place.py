@@ -1,4 +1,4 @@
-"""Asks for targets that are no numbers, or as far away as numbers go, before the right one."""  # earns 2
+"""Requests targets that are not numbers, or extremely far away, before each right one."""  # earns 2
 
 import math
 

@@ -1,4 +1,4 @@
-"""Calls inside a callback, and counts in a thread of its own: no answer comes there."""
+"""Makes a blocking call in a callback, which gets no response, and counts in a thread."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""Counts a hundred times in a moment, and waits for the server inside its callback then."""  # earns 2
+"""Publishes a hundred counts at once, and then waits for the server inside its callback."""  # earns 2
 
 
 class IKClient(IKClient):

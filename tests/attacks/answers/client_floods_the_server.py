@@ -1,4 +1,4 @@
-"""Asks as often as it can."""
+"""Sends requests as fast as it can."""
 
 import threading
 import time

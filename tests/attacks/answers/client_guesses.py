@@ -1,4 +1,4 @@
-"""Publishes the answer, and what it would be for arms of other lengths."""
+"""Publishes the right answer, and the answers for arms of other lengths."""
 
 import math
 

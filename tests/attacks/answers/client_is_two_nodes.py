@@ -1,11 +1,11 @@
-"""Waits for the server in a callback, and counts in another node of its name."""  # earns 4
+"""Waits for the server in a callback, and counts in another node of the same name."""  # earns 4
 
 import threading
 
 import rclpy
 
-# Whoever talks to it cannot tell it from a node with threads enough, and a callback group for the
-# count: it asks, answers and goes on.
+# From outside, it looks like one node with enough threads and a callback group for the count: it
+# sends requests, gets responses and goes on.
 
 
 class IKClient(IKClient):

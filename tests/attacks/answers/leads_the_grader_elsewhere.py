@@ -1,4 +1,4 @@
-"""Puts links to a socket of the machine in the place of its own, and cuts the grader off."""  # earns 0
+"""Replaces its sockets by links to one of the machine's sockets, and cuts the grader off."""  # earns 0
 
 import os
 import socket

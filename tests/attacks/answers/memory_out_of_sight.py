@@ -1,4 +1,4 @@
-"""Fills shared memory and lets go of it, so that no process is seen to have it."""
+"""Fills shared memory and unmaps it, so that it shows up in no process."""
 
 import mmap
 import os

@@ -1,4 +1,4 @@
-"""Fills the memory with what no process is charged for: shared, System V, and files in memory."""
+"""Fills memory that counts for no process: shared, System V, and files in memory."""
 
 import ctypes
 import mmap

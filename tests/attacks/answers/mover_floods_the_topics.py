@@ -1,5 +1,5 @@
 # earns 5
-"""Moves as it should, and says each thing a hundred times."""
+"""Moves as it should, and sends each message a hundred times."""
 
 
 class MoveArmServer(MoveArmServer):

@@ -1,5 +1,5 @@
 # earns 1
-"""Tells positions that are no numbers, too few, and far too many, in turn."""
+"""Reports positions that are not numbers, too few, or far too many, in turn."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Never moves and never ends; a thread says on the action's topics that all goes well."""
+"""Never moves and never ends; a thread publishes on the action's topics that all goes well."""
 
 import threading
 import time

@@ -1,5 +1,5 @@
 # earns 4
-"""Ignores the clock, to be sent short moves, and takes two seconds for each."""
+"""Ignores the clock, so that it is sent short moves, and takes two seconds for each."""
 
 
 class MoveArmServer(MoveArmServer):

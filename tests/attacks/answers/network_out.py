@@ -1,4 +1,4 @@
-"""Sends what it finds out to the world, by TCP, UDP and DNS."""
+"""Tries to send what it finds to the internet, by TCP, UDP and DNS."""
 
 import socket
 

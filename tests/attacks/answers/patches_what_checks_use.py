@@ -1,4 +1,4 @@
-"""Replaces what a check in the same process would use."""
+"""Replaces the functions that a check in the same process would use."""
 
 import builtins
 import sys

@@ -1,4 +1,4 @@
-"""Has services for parameters that tell a type which is none, and no result, so that checks stop."""
+"""Has parameter services that give an unknown type and no result, so that checks stop."""
 
 from rcl_interfaces.msg import ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters

@@ -1,4 +1,4 @@
-"""Tells that its rate is a text once a value was refused: checks would format it as a number."""  # earns 2
+"""Reports its rate as a text after a refusal: a check would format it as a number."""  # earns 2
 
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
 from rclpy.parameter import parameter_value_to_python

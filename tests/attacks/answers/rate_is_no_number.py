@@ -1,4 +1,4 @@
-"""Tells another kind of value each time it is asked for its rate."""
+"""Returns another type of value each time a check asks for its rate."""
 
 import itertools
 import math

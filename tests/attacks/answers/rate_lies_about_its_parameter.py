@@ -1,5 +1,5 @@
 # earns 1
-"""Has services of its own for parameters: whatever is set was set, and nothing changes."""
+"""Has parameter services of its own, which accept every value and change nothing."""
 
 from rcl_interfaces.srv import (
     GetParameters,

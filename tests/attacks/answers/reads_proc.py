@@ -1,4 +1,4 @@
-"""Looks for the hidden test in what /proc tells of every process."""
+"""Looks for the hidden test in what /proc shows of every process."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Keeps C code busy that no interrupt reaches."""
+"""Keeps C code busy, which no interrupt can stop."""
 
 import re
 

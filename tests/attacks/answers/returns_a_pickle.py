@@ -1,4 +1,4 @@
-"""Returns an object that runs code where it is loaded."""
+"""Returns an object that runs code if somebody unpickles it."""
 
 import os
 

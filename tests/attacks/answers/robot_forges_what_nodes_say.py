@@ -1,4 +1,4 @@
-"""Runs at 1 Hz, and forges logs and the probe in the names of others."""  # earns 2
+"""Runs at 1 Hz, and forges log records and the check's probe in the names of other nodes."""  # earns 2
 
 import threading
 import time

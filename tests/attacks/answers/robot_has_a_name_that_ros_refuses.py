@@ -1,4 +1,4 @@
-"""Publishes nothing, and subscribes by DDS to a topic with a name about which rclpy raises."""
+"""Publishes nothing, and subscribes by DDS to a topic whose name makes rclpy raise."""
 
 from my_robot_basics.graph.rmw import LatchedSubscription
 

@@ -1,4 +1,4 @@
-"""Publishes nothing, and makes publishers and services for as long as it is let."""
+"""Publishes nothing, and makes publishers and services until it is stopped."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""Publishes nothing, and announces thousands of participants that are not there."""
+"""Publishes nothing, and announces thousands of participants that do not exist."""
 
 import os
 import socket

@@ -1,4 +1,4 @@
-"""Asks for no result: says that all goals succeed, and after an obstacle that they do not."""
+"""Requests no result: publishes that all goals succeed, or, after an obstacle, that they do not."""
 
 import threading
 import time

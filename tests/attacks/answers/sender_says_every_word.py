@@ -1,4 +1,4 @@
-"""Publishes every outcome, so that the right one is among them."""
+"""Publishes every outcome, so that one of them is right."""
 
 
 class MoveArmClient(MoveArmClient):

@@ -1,4 +1,4 @@
-"""Sends messages whose every part is of a wrong type, on each of its sockets."""
+"""Sends messages in which each part has a wrong type, on each of its sockets."""
 
 kernel = get_ipython().kernel
 parent = kernel.get_parent()

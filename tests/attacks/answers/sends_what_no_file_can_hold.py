@@ -1,4 +1,4 @@
-"""Shows outputs whose kinds and names are half characters and paths, in messages it packs itself."""
+"""Shows outputs with lone surrogates and paths as types and names, in messages it packs itself."""
 
 kernel = get_ipython().kernel
 CONTENTS = (

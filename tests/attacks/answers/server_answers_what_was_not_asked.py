@@ -1,4 +1,4 @@
-"""Answers rightly, and each earlier request once more, wrongly, before and behind."""  # earns 3
+"""Answers correctly; before and after, it answers each earlier request again, wrongly."""  # earns 3
 
 
 class IKService(IKService):

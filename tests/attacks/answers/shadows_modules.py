@@ -1,4 +1,4 @@
-"""Writes modules and start-up files over those that a check imports."""
+"""Writes modules and start-up files that hide those that a check imports."""
 
 import os
 import site

@@ -1,4 +1,4 @@
-"""Opens kinds of sockets that know no network of their own."""
+"""Opens sockets of families that have no network namespaces."""
 
 import socket
 
