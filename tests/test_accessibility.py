@@ -64,7 +64,7 @@ def serious(page, html):
 
 
 def cut_off(page):
-    """The cells of tables, and paragraphs, of which a part lies right of the screen."""
+    """The cells of tables, and paragraphs, that extend beyond the right edge of the screen."""
     return page.evaluate(
         """Array.from(document.querySelectorAll('tbody th, tbody td, p, dd'))
         .filter(each => each.getBoundingClientRect().right > window.innerWidth)
@@ -73,7 +73,7 @@ def cut_off(page):
 
 
 def scrolls_sideways(page):
-    """The names of what a reader has to scroll sideways: the page itself, or a table."""
+    """The parts that need sideways scrolling: the page itself, or a table."""
     return page.evaluate(
         """Array.from(document.querySelectorAll('html, .wide'))
         .filter(each => each.scrollWidth > each.clientWidth)

@@ -11,7 +11,7 @@ from grader.workers.adaptive_semaphore import LOOK_SEC, AdaptiveSemaphore
 
 
 class Machine:
-    """Submissions that go in and out of a gate, while Linux tells what it is made to tell."""
+    """Submissions that pass a gate, while Linux reports the load that a test sets."""
 
     def __init__(self, monkeypatch, *, told_sec=1.0):
         self.now, self.stalled_sec = 0.0, told_sec
@@ -22,7 +22,7 @@ class Machine:
         self.inside = []
 
     async def fill(self):
-        """Let in all that get in; how many are there then."""
+        """Let in as many submissions as possible; return how many are inside."""
         while True:
             waits = asyncio.ensure_future(self.gate.__aenter__())
             await asyncio.sleep(0)
@@ -34,7 +34,7 @@ class Machine:
             self.inside.append(waits)
 
     async def after(self, seconds, *, share):
-        """Let time go by and one submission end; how many there are with those who follow."""
+        """Let time pass and one submission end; return how many are inside afterwards."""
         self.now += seconds
         self.stalled_sec += share * seconds
         self.inside.pop()

@@ -1,4 +1,4 @@
-"""Unusual answers, right and wrong: each earns what it should, and is told why it does not."""
+"""Unusual answers, right and wrong: each gets the expected points and reasons."""
 
 import answer_table
 import nbformat
@@ -19,7 +19,7 @@ ORDINARY = {
 
 
 def wrongly_judged(answers: list[Answer], course: Course) -> list[str]:
-    """Grade answers as one class; return which do not earn, or are not told, what they should."""
+    """Grade answers as one class; return those with unexpected points or reasons."""
     whose = {}
     for number, together in enumerate(in_class(answers)):
         student, lesson = f'student{number}', together[0].lesson

@@ -1,4 +1,4 @@
-"""The package arm_interfaces, and its wheel: made of the same sources, and at home everywhere."""
+"""The package arm_interfaces, and its wheel: made of the same sources, and usable on any Linux."""
 
 import hashlib
 import os

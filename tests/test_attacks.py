@@ -1,7 +1,7 @@
 """Attacks on the grader, honest students in between: nobody gains, leaks, stays or harms.
 
 `attacks/answers/` holds a file for each attack that is an answer, `attacks/notebooks.py` those
-that are something else. What an attack tries stands in its first line, and what it earns, if
+that are something else. The first line of each attack says what it tries, and what it earns, if
 anything.
 """
 
@@ -124,7 +124,7 @@ def test_each_attack_says_what_it_tries():
 
 
 def test_each_attack_has_the_names_that_it_uses():
-    """One that stops at a NameError tries nothing, and earns nothing for that."""
+    """An attack that stops at a NameError would earn nothing only because it tries nothing."""
     missing = {}
     for name in ANSWERS:
         bound = {'PORT', 'GRADEBOOK'}
@@ -184,7 +184,7 @@ def test_nothing_runs_in_the_instructors_browser(graded):
 
 
 def test_the_attacks_are_real(tmp_path):
-    """Some of them, run without a sandbox on what they may have: each does what it says."""
+    """Some attacks, run without a sandbox on files that they may have: each does what it says."""
     stolen = tmp_path / 'left.txt'
     stolen.write_text(CANARY)
     code = (

@@ -1,4 +1,4 @@
-"""What keeps a sandbox from being built is named, whichever it is, and the least that opens it."""
+"""Whatever prevents a sandbox is named, with the smallest change that allows it."""
 
 import importlib.util
 import json

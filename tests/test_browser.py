@@ -55,7 +55,7 @@ def chromium():
 
 @pytest.fixture(scope='module')
 def page(lab, chromium):
-    """A JupyterLab in the browser, for one lesson after the other: to load one takes long."""
+    """A JupyterLab in the browser, for one lesson after the other: loading one takes long."""
     for name in ('index.ipynb', 'terms.md'):
         shutil.copy(ROOT / 'notebooks' / name, lab.folder)
     page = chromium.new_page(viewport={'width': 1200, 'height': 900})

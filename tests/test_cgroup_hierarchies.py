@@ -1,4 +1,4 @@
-"""Where cgroups can be made, on machines of all kinds, by what Linux says of them."""
+"""In which folder cgroups can be made, on machines of all kinds."""
 
 import os
 import subprocess
@@ -28,7 +28,7 @@ def fresh():
 
 @pytest.fixture
 def machine(tmp_path, monkeypatch):
-    """Makes a machine of files: where we are, what is mounted, and who we are."""
+    """Makes files that describe a machine: its cgroups, its mounts and its user."""
 
     def make(cgroup, mounts, *, root=True, systemd=True):
         (tmp_path / 'cgroup').write_text(cgroup)
@@ -48,7 +48,7 @@ def machine(tmp_path, monkeypatch):
 
 
 def tree(folder, *, processes='', controllers=OFF, is_root=False):
-    """Make a folder look as a cgroup of version 2."""
+    """Make a folder look like a cgroup of version 2."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / 'cgroup.procs').write_bytes(processes.encode())  # it is no move
     (folder / 'cgroup.controllers').write_text(controllers)
@@ -182,13 +182,13 @@ def test_a_machine_without_any_says_so(machine):
 
 
 def answering(code):
-    """Stand in for subprocess.run where systemd-run ends with a code."""
+    """Replace subprocess.run: systemd-run ends with a code."""
     return lambda command, **more: subprocess.CompletedProcess(command, code)
 
 
 @pytest.fixture
 def nowhere(machine, monkeypatch):
-    """A systemd machine whose session is not ours to use."""
+    """A systemd machine whose session this user cannot use."""
     proc = machine('0::/user.slice/session-3.scope\n', V2, root=False)
     tree(proc / 'unified', is_root=True)
     tree(proc / 'unified' / 'user.slice' / 'session-3.scope', processes='41')

@@ -20,7 +20,7 @@ ORDINARY = {'stops_at_the_first_unreachable'}
 
 
 def wrongly_judged(changes: tuple[Change, ...], course: Course) -> list[str]:
-    """Grade packages as one class; return which do not earn, or are not told, what they should."""
+    """Grade packages as one class; return those with unexpected points or reasons."""
     for change in changes:
         folder = course.folder('submitted', change.name, LESSON)
         folder.mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""Whether a client waits for a server that is not there, and what a busy machine may have done."""
+"""Whether a client waits for an absent server, or whether only the machine is busy."""
 
 from types import SimpleNamespace
 
@@ -9,7 +9,7 @@ from my_robot_basics.feedback.errors import Starved
 
 
 class Client:
-    """Answers after so long."""
+    """Answers after a given time."""
 
     def __init__(self, server):
         self.server = server
@@ -23,7 +23,7 @@ class Client:
 
 
 class Server:
-    """A check's own, which is away, and the time in which that is so."""
+    """A check's own server, which is absent for a given time."""
 
     name, asked_on = '/move_arm', '/goal_pose'
 

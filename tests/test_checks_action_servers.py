@@ -1,4 +1,4 @@
-"""A node that sends goals is right in whatever way it waits for their ends."""
+"""A node that sends goals passes, however it waits for their ends."""
 
 import collections
 import threading
@@ -18,7 +18,7 @@ MoveArmServer = imported('move_arm_server').MoveArmServer
 
 
 class Lambdas(MoveArmClient):
-    """Publishes at once what is known, by lambdas."""
+    """Publishes each outcome at once, with lambdas."""
 
     def answered(self, future):
         handle = future.result()
@@ -50,7 +50,7 @@ class Awaits(MoveArmClient):
 
 
 class Blocks(Awaits):
-    """Calls and waits, with threads enough."""
+    """Makes blocking calls, with enough threads."""
 
     def __init__(self):
         super().__init__()
@@ -80,7 +80,7 @@ class Blocks(Awaits):
 
 
 class Queue(MoveArmClient):
-    """A timer that works off what arrived."""
+    """A timer that handles a queue of received poses."""
 
     def __init__(self):
         super().__init__()
@@ -120,7 +120,7 @@ def test_who_sends_right_passes_in_whatever_way(run, node_class):
 
 
 def test_an_obstacle_from_before_is_dealt_with_before_the_next_goal(run, monkeypatch):
-    """Two topics know no order: the goal may be accepted before the obstacle comes."""
+    """Two topics have no common order: the goal may be accepted before the obstacle arrives."""
     happened = []
 
     def note(owner, name):

@@ -1,4 +1,4 @@
-"""A node that sends goals and is wrong in one thing is told the cause."""
+"""For a node that sends goals and has one mistake, the check names the cause."""
 
 import threading
 
@@ -14,7 +14,7 @@ from arm_interfaces.action import MoveArm
 
 @pytest.fixture
 def impatient(monkeypatch):
-    """Wait for what does not come no longer than it takes to be sure."""
+    """Shorten the waits for messages that never come."""
     monkeypatch.setattr(served_action, 'REPLY_SEC', 2.0)
 
 
@@ -109,7 +109,7 @@ class NeverSends(MoveArmClient):
 
 
 class WaitsForTheServer(MoveArmClient):
-    """Waits in the callback until there is one, and for no answer."""
+    """Waits in the callback until there is a server, but for no response."""
 
     def send(self, pose):
         self.client.wait_for_server()
@@ -117,7 +117,7 @@ class WaitsForTheServer(MoveArmClient):
 
 
 class WaitsForTheLost(MoveArmClient):
-    """One goal after the other, and the first one was sent to nobody."""
+    """Sends one goal after the other, but the first one reaches no server."""
 
     def __init__(self):
         super().__init__()

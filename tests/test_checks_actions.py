@@ -1,4 +1,4 @@
-"""A node that serves an action is right in whatever way it waits."""
+"""A node that serves an action passes, however it waits."""
 
 import math
 import random
@@ -65,7 +65,7 @@ class TimerDriven(MoveArmServer):
 
 
 class HandlesAccepted(TimerDriven):
-    """The goal is taken by handle_accepted_callback, and executed for its result alone."""
+    """The goal is taken by handle_accepted_callback, and is executed only for its result."""
 
     def make_server(self, **callbacks):
         return super().make_server(handle_accepted_callback=self.take, **callbacks)
@@ -94,7 +94,7 @@ class CoroutineCallbacks(MoveArmServer):
 
 
 class Threads(MoveArmServer):
-    """A blocking execute callback, and threads enough."""
+    """A blocking execute callback, and enough threads."""
 
     def __init__(self, **kwargs):
         self.lock = threading.Lock()
@@ -140,7 +140,7 @@ class ThreadsFixedSteps(Threads, FixedSteps):
 
 
 class ThreadsOddSteps(Threads):
-    """Sleeps that are no multiple of any step of the check's clock, and adds them up."""
+    """Adds up its sleeps, which are no multiple of a step of the check's clock."""
 
     ODD_SEC = 0.033
 
@@ -155,7 +155,7 @@ class ThreadsOddSteps(Threads):
 
 
 class FlagInExecute(MoveArmServer):
-    """Remembers that the arm moves when it begins to."""
+    """Sets its flag only when the arm starts to move."""
 
     def judge(self, goal):
         is_free = self.is_possible(goal) and not self.is_moving
@@ -167,7 +167,7 @@ class FlagInExecute(MoveArmServer):
 
 
 class AsksTheHandle(MoveArmServer):
-    """Knows no flag: the goal that was accepted last is active, or not."""
+    """Has no flag: it checks whether the last accepted goal is active."""
 
     last = None
 
@@ -226,7 +226,7 @@ def ticks(monkeypatch):
     ('node_class', 'least', 'most'), [(MoveArmServer, 200, 400), (FixedSteps, 1150, 1300)]
 )
 def test_a_robot_minute_is_driven(run, ticks, node_class, least, most):
-    """In coarse steps where the server keeps pace with them; one that adds up steps does not."""
+    """In coarse steps if the server can follow them; one that adds up steps cannot."""
     run(node_class)
     move_arm = action('/move_arm', MoveArm)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)

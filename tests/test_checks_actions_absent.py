@@ -1,4 +1,4 @@
-"""No server of an action, or one too many: it is looked for, and told where it is."""
+"""No server of an action, or one too many: the check looks for it and says where it is."""
 
 import pytest
 from my_robot_basics.checks import CheckFailed, action, awaited_servers, moves
@@ -14,7 +14,7 @@ MoveArmServer = imported('move_arm_server').MoveArmServer
 
 @pytest.fixture
 def impatient(monkeypatch):
-    """Wait for what does not come no longer than it takes to be sure."""
+    """Shorten the waits for messages that never come."""
     monkeypatch.setattr(awaited_servers, 'SERVER_SEC', 1.0)
 
 

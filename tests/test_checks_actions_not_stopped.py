@@ -1,4 +1,4 @@
-"""A typical mistake in what an action server cancels or rejects fails that check alone."""
+"""A typical mistake in what an action server cancels or rejects fails only that check."""
 
 import time
 
@@ -92,7 +92,7 @@ class TellsTheGoalWhenCancelled(MoveArmServer):
 
 
 class FlagStays(MoveArmServer):
-    """A flag of its own, which nobody takes back: the arm never moves again."""
+    """A flag of its own, which is never reset: the arm never moves again."""
 
     is_cancelled = False
 
@@ -138,7 +138,7 @@ class LooksBeforeItCounts(MoveArmServer):
 
 
 class LocksItself(MoveArmServer):
-    """It takes each goal for one that moves the arm."""
+    """Treats each goal as if the arm were already moving."""
 
     def judge(self, goal):
         answer = super().judge(goal)

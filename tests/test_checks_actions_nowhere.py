@@ -1,4 +1,4 @@
-"""An action server that gets nowhere is told why, by each check."""
+"""For an action server whose arm gets nowhere, each check says why."""
 
 import pytest
 from arm_checks import CHECKS, reaches

@@ -1,4 +1,4 @@
-"""A typical mistake in how an action server moves or what it publishes fails that check alone."""
+"""A typical mistake in how an action server moves or what it publishes fails only that check."""
 
 import time
 
@@ -127,7 +127,7 @@ class TellsNoRemaining(Reports):
 
 
 class OneJointLate(Reports):
-    """Joint2 moves in the second half alone."""
+    """Joint2 moves only in the second half."""
 
     def on_the_way(self):
         parts = self.part, max(0.0, 2.0 * self.part - 1.0)
@@ -149,7 +149,7 @@ class Accelerates(Reports):
 
 
 class Pauses(MoveArmServer):
-    """Tells nothing in the midst of a move."""
+    """Sends no feedback in the middle of a move."""
 
     def report(self, handle):
         if not 0.4 < self.part < 0.7:
@@ -157,7 +157,7 @@ class Pauses(MoveArmServer):
 
 
 class DividesByTheWay(MoveArmServer):
-    """Its way may be none: it raises then, and has forgotten nothing else."""
+    """The distance may be zero: then it raises, but it has no other mistake."""
 
     def step(self, handle):
         if self.seconds == 0.0:

@@ -1,4 +1,4 @@
-"""Angles in a log: what counts as one, and what is said of those that are not there."""
+"""Angles in a log: what counts as one, and what the check says about missing ones."""
 
 import math
 

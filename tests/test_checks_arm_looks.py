@@ -1,4 +1,4 @@
-"""Whether a slow arm follows the robot's clock: it stands still while that does."""
+"""Whether a slow arm follows the robot's clock: the arm stands still while the clock does."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""An arm that is slow, and on its way: what tells it from one that never gets there."""
+"""How a check distinguishes a slow arm from one that never arrives."""
 
 from types import SimpleNamespace
 
@@ -12,7 +12,7 @@ GOAL = (1.0, -0.5)
 
 
 def is_slow(parts, *, since_sec=0.0, is_over=False, lengths=2):
-    """Whether ten messages a second with these parts of the way tell of a slow arm."""
+    """Whether ten messages a second with these parts of the way mean a slow arm."""
     told = [
         (number * 10**8, MoveArm.Feedback(position=[part, -part / 2][:lengths]))
         for number, part in enumerate(parts)
@@ -26,7 +26,7 @@ def is_slow(parts, *, since_sec=0.0, is_over=False, lengths=2):
 
 
 def evenly(speed):
-    """What an arm tells in four seconds at that part of its way in each tenth of a second."""
+    """Four seconds of feedback, with that part of the way in each tenth of a second."""
     return [speed * number for number in range(40)]
 
 

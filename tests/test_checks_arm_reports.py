@@ -1,4 +1,4 @@
-"""What the feedback on a move tells, on made-up messages, each with a near miss."""
+"""What a check reads from the feedback on a move, with made-up messages, each with a near miss."""
 
 from types import SimpleNamespace
 

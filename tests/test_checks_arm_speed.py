@@ -34,14 +34,14 @@ def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0,
 
 
 def reports(speed, *, seconds, step_sec=0.05, late_sec=(0.0,)):
-    """What a server tells that computes each position from its clock, and may be late with it."""
+    """Feedback of a server that computes each position from its clock, and may send late."""
     late = itertools.cycle(late_sec)
     times = [step_sec * step + next(late) for step in range(round(seconds / step_sec))]
     return [(at, speed * at) for at in times]
 
 
 def steps(speed, *, seconds, step_sec=0.05, late_sec):
-    """What a loop tells that adds one step to the other, and sleeps longer than it is to."""
+    """The feedback of a loop that adds up steps, and sleeps longer than requested."""
     late, at, found = itertools.cycle(late_sec), 0.0, []
     for step in range(round(seconds / step_sec)):
         found.append((at, speed * step_sec * step))
@@ -178,7 +178,7 @@ def test_short_moves_take_no_time_that_a_server_could_always_take():
 
 @pytest.mark.parametrize(('count', 'is_proof'), [(7, False), (20, True)])
 def test_feedback_that_goes_on_proves_a_request_that_waits(count, is_proof):
-    """On a machine of whatever load: what publishes it would have answered, too."""
+    """On a machine under any load: a node that publishes feedback could also have answered."""
     asked_ns = 10**18
     told = [(asked_ns + step * 50_000_000, None) for step in range(-9, count)]
     sent = SimpleNamespace(feedback=lambda: told)

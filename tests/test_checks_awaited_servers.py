@@ -1,4 +1,4 @@
-"""A server that does not come: whose fault it is, and how long anybody waits for it."""
+"""A server that never appears: whose fault it is, and how long a check waits for it."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""How long Validate waits for the checks of an exercise, and what it says of those left."""
+"""How long Validate waits for the checks of an exercise, and what it says about the rest."""
 
 import asyncio
 
@@ -11,7 +11,7 @@ from nbformat.v4 import new_code_cell
 
 
 class Watch:
-    """Time that goes by where a check runs."""
+    """Time that passes while a check runs."""
 
     wall = free = 0.0
 

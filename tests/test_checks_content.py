@@ -1,4 +1,4 @@
-"""What a message holds is the same for equal messages, whatever else was in memory before."""
+"""Equal messages compare as equal, whatever was in memory before."""
 
 import random
 

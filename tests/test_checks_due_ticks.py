@@ -1,4 +1,4 @@
-"""When the next message of a timer is due, as ticks tell."""
+"""When the next message of a timer is due, computed from earlier ticks."""
 
 import pytest
 from my_robot_basics.checks.due_ticks import DueTicks
@@ -7,7 +7,7 @@ STEP_NS = 10**8
 
 
 def learned(gaps, *, messages=1, took_sec=0.001, step_ns=STEP_NS):
-    """Ticks, of which one each so many brings messages; how many of them were due."""
+    """Simulate ticks of which every nth brings messages; return how many were due."""
     due, was_due = DueTicks(), []
     for gap in gaps:
         for tick in range(1, gap + 1):

@@ -1,4 +1,4 @@
-"""In a grade cell, what a check has waited for once is not waited for again."""
+"""In a grade cell, no check waits again for something that another check has waited for."""
 
 from types import SimpleNamespace
 

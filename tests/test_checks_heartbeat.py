@@ -1,4 +1,4 @@
-"""What counts as standing still: a node that waits, and no machine that is short of time."""
+"""What counts as standing still: a node that waits, but not a machine that is short of time."""
 
 from types import SimpleNamespace
 
@@ -40,7 +40,7 @@ def every(period_sec, *, start_sec=0.0, end_sec=60.0):
 
 
 def pausing(*, start_sec, end_sec, then_sec=0.1):
-    """Ten times a second, but for a pause; once in `then_sec` behind it."""
+    """Ten times a second, except for a pause; after it, once in `then_sec`."""
     return [*every(0.1, end_sec=start_sec), *every(then_sec, start_sec=end_sec)]
 
 

@@ -1,4 +1,4 @@
-"""Who has not asked for what was said before does not get it, however often one tries."""
+"""A subscription that is not TRANSIENT_LOCAL gets no earlier messages, in any try."""
 
 import itertools
 from contextlib import nullcontext

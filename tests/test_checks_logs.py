@@ -46,7 +46,7 @@ class LogsMuch(IKSolver):
 
 
 def test_what_would_take_forever_to_read_is_not_read():
-    """The grader gave up after 150 s, twice, and left it to a person."""
+    """Otherwise the grader would give up after 150 s, twice, and leave it to a person."""
     live.run(LogsMuch)
     words = 'the answer to one target in the log of /ik_solver_node, saw 480,000 characters: log'
     try:

@@ -1,4 +1,4 @@
-"""A node that is still on the graph when its program has ended: who is to blame for that."""
+"""A node on the graph whose program has ended: whether the program is to blame."""
 
 import signal
 from types import SimpleNamespace

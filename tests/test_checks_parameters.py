@@ -226,7 +226,7 @@ FORMLESS = {
 
 @pytest.mark.parametrize('response', FORMLESS.values(), ids=FORMLESS)
 def test_services_of_their_own_that_answer_in_no_form_are_named(monkeypatch, response):
-    """They stopped the check, and left the exercise to a person in place of a zero."""
+    """Otherwise they would stop the check, and a person would have to grade instead of a zero."""
     monkeypatch.setattr(NodeParameters, '_call', lambda *_: response)
     parameters = NodeParameters('/adjustable_publisher')
     is_told = isinstance(response, GetParameters.Response)

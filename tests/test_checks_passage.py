@@ -1,4 +1,4 @@
-"""What becomes of messages that go through a node, where a machine is busy, or others publish."""
+"""What happens to messages that pass a node if the machine is busy, or if others publish."""
 
 from itertools import count
 from types import SimpleNamespace
@@ -16,7 +16,7 @@ GAP_NS = SEC // 100
 
 
 class Node:
-    """Lets out what it receives at once, but only the second of those pairs, counted from 0."""
+    """Republishes each message at once, but only the second of those pairs, counted from 0."""
 
     def __init__(self, loses, apart_ns=GAP_NS):
         self.loses, self.received, self.numbers = loses, [], count()
@@ -67,7 +67,7 @@ def test_a_busy_machine_may_lose_most_pairs_of_a_short_queue(is_busy):
 
 @pytest.mark.usefixtures('is_busy')
 def test_a_slow_timer_that_publishes_between_the_two_keeps_no_pair():
-    """On a busy machine its period ended there in each seventh pair: it earned its points so."""
+    """On a busy machine, its period ended inside every seventh pair, which gave it points."""
     assert loses_one_of_two(lambda pair: pair % 7 != 5, apart_ns=SEC // 2)
 
 

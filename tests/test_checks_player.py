@@ -1,4 +1,4 @@
-"""A program that visits targets: right in whatever way, and told the cause where it is not."""
+"""A program that visits targets: right in several ways, and with the cause if it is wrong."""
 
 import contextlib
 import random
@@ -23,7 +23,7 @@ VISIBLE = (
 
 
 class StandIn:
-    """The program, in place of the executable of a package that would have to be built."""
+    """Runs the program instead of the executable of a package, which would have to be built."""
 
     def __init__(self, variant, parameters):
         targets = ', '.join(map(repr, parameters['targets']))

@@ -1,4 +1,4 @@
-"""Predictions: what a dict must hold, what is said of wrong ones, what points are left."""
+"""Predictions: what a dict must hold, what is said about wrong ones, which points remain."""
 
 import math
 import sys

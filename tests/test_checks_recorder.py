@@ -1,4 +1,4 @@
-"""A subscription of a check: whom it has met, and whom it never will."""
+"""A subscription of a check: which publishers it has discovered, and which it can never match."""
 
 import pytest
 from my_robot_basics.checks.recorder import Recorder

@@ -1,4 +1,4 @@
-"""A node that passes messages on is judged by what comes out, whatever its own QoS."""
+"""A node that passes messages on is judged by what it publishes, whatever its own QoS."""
 
 import pytest
 from my_robot_basics.checks import CheckFailed, relay, relay_endpoints, relays, topic_endpoints
@@ -66,7 +66,7 @@ def test_other_nodes_on_the_topics_are_no_hindrance(run):
 
 
 class Looks(monitor.JointStateMonitor):
-    """Subscribes once there is a publisher, and asks for what that offers."""
+    """Subscribes once there is a publisher, with the QoS that it offers."""
 
     def asked(self, offered):
         return QoSProfile(depth=10, reliability=offered.reliability, durability=offered.durability)
@@ -121,7 +121,7 @@ def test_a_publisher_that_waits_for_a_message_is_too_late(run, impatient):
 
 
 class Changes(monitor.JointStateMonitor):
-    """Publishes another message in place of a JointState."""
+    """Publishes another message instead of the JointState."""
 
     def changed(self, publish):
         return lambda message: publish(

@@ -109,7 +109,7 @@ class DoublesEachHundredth(Counts):
 
 
 class RepeatsTheLast(Counts):
-    """Once more where nothing has come for so long"""
+    """Publishes the last message again if nothing arrives for a given time"""
 
     def chosen(self, received):
         if not hasattr(self, 'idle'):
@@ -134,7 +134,7 @@ class SwapsPairs(Counts):
 
 @pytest.fixture
 def all_the_time(monkeypatch):
-    """However busy the machine is: two lost messages tell of no kind, and more take longer."""
+    """On any machine: two lost messages do not show a pattern, and more would take longer."""
     monkeypatch.setattr(passage, 'MOST_SEC', 60.0)
 
 

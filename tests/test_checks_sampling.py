@@ -63,7 +63,7 @@ def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monk
 
 
 def test_messages_that_end_and_come_again_in_the_proof_are_looked_at_anew(monkeypatch):
-    """A thread had no processor while a recording was made: it has not ended."""
+    """A thread that got no processor during a recording has not ended."""
     ended, proof = recording(every(0.2, 8), seconds=10.0), recording(every(0.2, 8), seconds=1.6)
     monkeypatch.setattr(sampling, 'drive', lambda topic, **_: ended)
     monkeypatch.setattr(sampling, 'prove', lambda topic, seen: proof)

@@ -47,7 +47,7 @@ def client():
 
 
 def count_looks(node, service, *, unknown_times):
-    """How often it looks for a reader that is unknown so many times."""
+    """How often it looks for a reader that becomes known after n looks."""
     looks, look_up = [], node.get_subscriptions_info_by_topic
 
     def look_up_late(name, **options):

@@ -1,4 +1,4 @@
-"""A node that asks a service is right in whatever way it asks, and finds no server but ours."""
+"""A node that calls a service passes, however it calls, and finds no server but ours."""
 
 import collections
 import threading
@@ -15,7 +15,7 @@ from arm_interfaces.srv import SolveIK
 
 
 class Base(IKClient):
-    """With groups: what it asks is in one, and its other callbacks are in another."""
+    """With groups: its client is in one, and its other callbacks are in another."""
 
     def __init__(self):
         self.group = ReentrantCallbackGroup()
@@ -34,7 +34,7 @@ class Awaits(Base):
 
 
 class Blocks(Base):
-    """Calls and waits, with threads enough and a group that allows it."""
+    """Makes blocking calls, with enough threads and a group that allows it."""
 
     def __init__(self):
         super().__init__()
@@ -71,7 +71,7 @@ class OwnThread(IKClient):
 
 
 class WorksOff(IKClient):
-    """A queue that a timer works off, one after the other."""
+    """A queue that a timer handles, one target after the other."""
 
     def __init__(self):
         super().__init__()

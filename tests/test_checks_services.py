@@ -1,4 +1,4 @@
-"""A node that serves is judged by its answers, and one that gives none is told the cause."""
+"""A node that serves is judged by its responses; if it gives none, the check names the cause."""
 
 import math
 import threading
@@ -40,7 +40,7 @@ def run():
 
 @pytest.fixture
 def impatient(monkeypatch):
-    """Wait for what does not come no longer than it takes to be sure."""
+    """Shorten the waits for messages that never come."""
     monkeypatch.setattr(awaited_servers, 'SERVER_SEC', 1.0)
     monkeypatch.setattr(services, 'ANSWER_SEC', 1.0)
 
@@ -302,7 +302,7 @@ def test_a_missing_server_is_looked_for(run, arguments, message):
 
 
 class OnATopic(Node):
-    """Subscribes to the requests of a service: rclpy takes their type for that of a message."""
+    """Subscribes to the requests of a service: rclpy treats their type as a message type."""
 
     def __init__(self):
         super().__init__('ik_service')

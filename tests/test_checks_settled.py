@@ -1,4 +1,4 @@
-"""Whether a notebook may still make an endpoint: told by its process, while no cell runs."""
+"""Whether a notebook may still make an endpoint: its process says so, while no cell runs."""
 
 import json
 import subprocess
@@ -55,7 +55,7 @@ asyncio.run(ask())
 
 
 def told(source):
-    """What a process says that has run this; it is in a session of its own, as a kernel is."""
+    """What a process reports after it has run this code; like a kernel, it has its own session."""
     run = subprocess.run(
         [sys.executable, '-P', '-c', source],
         capture_output=True,

@@ -1,4 +1,4 @@
-"""Stamps of the node's clock and of the computer's are told apart, whichever look was made."""
+"""Stamps of the node's clock and of the computer's are distinguished in every recording."""
 
 import pytest
 from my_robot_basics.checks import CheckFailed, own_clock, topic

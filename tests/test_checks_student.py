@@ -24,7 +24,7 @@ MODES = ['one process', 'test room']
 
 @pytest.fixture(params=MODES)
 def notebook(request, monkeypatch):
-    """A function that gives `__main__` names; questions go by both of the ways."""
+    """A function that defines names in `__main__`; requests take both ways."""
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     if request.param == 'test room':
         monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')

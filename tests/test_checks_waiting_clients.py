@@ -1,4 +1,4 @@
-"""A client that waits for the answer, or for the server, keeps itself from it, and is told so."""
+"""A client that waits for the answer, or for the server, blocks itself, and the check says so."""
 
 import time
 
@@ -14,7 +14,7 @@ from arm_interfaces.srv import SolveIK
 
 @pytest.fixture
 def impatient(monkeypatch):
-    """Wait for what does not come no longer than it takes to be sure."""
+    """Shorten the waits for messages that never come."""
     monkeypatch.setattr(servers, 'TIMEOUT_SEC', 1.5)
 
 

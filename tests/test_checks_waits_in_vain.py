@@ -1,4 +1,4 @@
-"""Whether the end of a move is waited for in vain, as its feedback tells."""
+"""Whether feedback shows that it is useless to wait for the end of a move."""
 
 from types import SimpleNamespace
 
@@ -13,7 +13,7 @@ GOAL = (1.0, -0.5)
 
 
 def sent_with(parts, *, speed=1.0, is_over=False, lengths=2):
-    """A goal with ten messages a second, which tell these parts of the way."""
+    """A goal with ten feedback messages a second, with these parts of the way."""
     told = [
         (number * 10**8, MoveArm.Feedback(position=[part, -part / 2][:lengths]))
         for number, part in enumerate(parts)
@@ -23,7 +23,7 @@ def sent_with(parts, *, speed=1.0, is_over=False, lengths=2):
 
 
 def evenly(speed, seconds=4):
-    """What an arm tells that goes that part of its way in each second."""
+    """The feedback of an arm that moves that part of its way in each second."""
     return [speed * number / 10 for number in range(10 * seconds)]
 
 

@@ -62,7 +62,7 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
 
 @pytest.mark.starts
 def test_what_nobody_had_time_to_take_has_come_all_the_same(monkeypatch):
-    """A busy machine leaves the check none, or a publisher with a period of 0 sends too many."""
+    """The check has no time on a busy machine, or if a publisher with a period of 0 floods it."""
     with running('fifty_hz'), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
         # longer than it is asked for: what was sent within that time has then arrived

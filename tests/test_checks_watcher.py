@@ -73,7 +73,7 @@ def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):
     ids=['of a topic', 'of a service'],
 )
 def test_a_name_that_ros_refuses_fails_a_check(node, dds_name):
-    """DDS allows it, and rclpy raises where it is asked about such a topic or service."""
+    """DDS allows it, and rclpy raises if it is asked about such a topic or service."""
     node.create_publisher(String, '/talk', 1)
     interface = 'SetParameters_Request' if dds_name.startswith('rq/') else 'ParameterEvent'
     kind = 'srv' if dds_name.startswith('rq/') else 'msg'

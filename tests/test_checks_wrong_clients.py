@@ -1,4 +1,4 @@
-"""A client that asks or publishes the wrong thing is told what."""
+"""If a client requests or publishes the wrong thing, the check says what."""
 
 from functools import partial
 
@@ -13,7 +13,7 @@ from arm_interfaces.srv import SolveIK
 
 @pytest.fixture
 def impatient(monkeypatch):
-    """Wait for what does not come no longer than it takes to be sure."""
+    """Shorten the waits for messages that never come."""
     monkeypatch.setattr(servers, 'TIMEOUT_SEC', 1.5)
 
 
@@ -209,7 +209,7 @@ def test_who_asks_without_end_is_stopped(run, monkeypatch):
 
 
 class AsksInALoop(IKClient):
-    """Asks for each target more often than its queue can hold answers."""
+    """Sends more requests for each target than its queue can hold responses."""
 
     def ask(self, target):
         for _ in range(holding_server.MOST_HELD):

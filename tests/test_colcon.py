@@ -1,4 +1,4 @@
-"""`colcon build` of the interfaces: for real, and in a sentence where there is no compiler."""
+"""`colcon build` of the interfaces: a real build, and one sentence if there is no compiler."""
 
 import json
 import shutil

@@ -1,4 +1,4 @@
-"""What was handed in lies where it is graded, and what was there before is kept."""
+"""Submissions are put where they are graded, and earlier files there are kept."""
 
 import csv
 from datetime import datetime

@@ -105,7 +105,7 @@ def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, came_in
 
 
 def test_a_file_that_can_t_be_read_costs_only_itself(course, came_in, monkeypatch):
-    """It may lie on a damaged disk, or be gone since the folder was listed."""
+    """It may be on a damaged disk, or have been removed since the folder was listed."""
     for student in ('ada', 'bob', 'zoe'):
         write(came_in / f'{student}_{TOY}.ipynb', student)
         write(came_in / f'{student}-{TOY}.ipynb', student)

@@ -1,4 +1,4 @@
-"""Whose a file is that came in: numbers and names of platforms, and work of another's name."""
+"""Who owns a collected file: platform numbers and names, and work under another's name."""
 
 import json
 import shutil

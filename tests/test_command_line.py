@@ -1,4 +1,4 @@
-"""What a command imports before it knows that it has to: times depend on the machine, this not."""
+"""What a command imports too early; unlike times, this does not depend on the machine."""
 
 import json
 import subprocess

@@ -17,7 +17,7 @@ def bare(tmp_path):
 
 @pytest.fixture
 def machine(bare):
-    """A machine with a Python and a uv that only write down what they are asked for."""
+    """A machine with a Python and a uv that only record their arguments."""
     return with_programs(bare)
 
 

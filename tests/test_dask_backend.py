@@ -31,7 +31,7 @@ ANSWERS = {'ada': RIGHT, 'bob': WRONG, 'eve': RIGHT, 'kim': WRONG, 'zoe': RIGHT}
 
 @pytest.fixture(autouse=True)
 def machinery(monkeypatch):
-    """What toy_dask_worker.py says of itself."""
+    """What toy_dask_worker.py reports about itself."""
     monkeypatch.setattr(dask_backend, 'machinery', lambda: f'toy, numpy {version("numpy")}')
 
 

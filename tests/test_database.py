@@ -34,7 +34,7 @@ def course(tmp_path):
 
 @pytest.fixture
 def empty(tmp_path):
-    """A course with nbgrader's database, in which nothing is."""
+    """A course with nbgrader's database, which is empty."""
     course = Course.at(tmp_path)
     make_database(course)
     return course

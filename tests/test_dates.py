@@ -84,7 +84,7 @@ def test_any_other_text_is_no_time(text):
 
 
 def test_dateutil_is_stopped_by_one_still():
-    """Else the example of a hostile time has lost its sting."""
+    """Otherwise the example of a hostile time no longer tests anything."""
     with pytest.raises(ArithmeticError):
         parse(STOPS_DATEUTIL)
 

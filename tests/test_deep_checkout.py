@@ -52,7 +52,7 @@ def moved(home: Path, deep: Path) -> list[str]:
 
 @pytest.fixture
 def home():
-    """A home that nobody else may enter, where everybody can reach it."""
+    """A home folder that only its owner may enter, below a folder that everybody may enter."""
     with tempfile.TemporaryDirectory(prefix='home-', ignore_cleanup_errors=True) as folder:
         yield Path(folder)
 

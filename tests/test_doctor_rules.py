@@ -1,4 +1,4 @@
-"""What a rule on topics says of evidence, without a graph."""
+"""What a rule on topics concludes from evidence, without a graph."""
 
 import dataclasses
 from importlib import resources

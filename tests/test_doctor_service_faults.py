@@ -1,4 +1,4 @@
-"""Planted faults of services: each is named first; where the fix is a line, that line fixes it."""
+"""Planted faults of services: each is named first; if the fix is one line, that line fixes it."""
 
 import contextlib
 import re

@@ -1,4 +1,4 @@
-"""What a rule on services says of evidence, without a graph."""
+"""What a rule on services concludes from evidence, without a graph."""
 
 import dataclasses
 import html

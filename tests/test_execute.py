@@ -1,4 +1,4 @@
-"""Executing a notebook: each exercise alone, a verdict in each grade cell, and no test told."""
+"""Running a notebook: each exercise by itself, a verdict in each grade cell, no test revealed."""
 
 import asyncio
 import os

@@ -1,4 +1,4 @@
-"""What is no answer's fault: it is tried again, and then left to a person."""
+"""A failure that is not the answer's fault is tried again, and then left to a person."""
 
 import asyncio
 import time

@@ -1,6 +1,6 @@
-"""What a check says when it fails leaves no English words in Chinese, whatever stands in it.
+"""What a check says when it fails leaves no English words in Chinese, whatever values it has.
 
-Each `fail(expected=…, seen=…, hint=…)` of the code is said with values that are no words.
+Each `fail(expected=…, seen=…, hint=…)` of the code is translated with values that are not words.
 """
 
 import ast
@@ -160,7 +160,7 @@ def reasons():
 
 
 def english_in(shown):
-    """Return the words that are left, or the whole where it was not taken apart as a reason."""
+    """Return the words that are left, or the whole text if it was not recognized as a reason."""
     if not re.fullmatch('预期：.+；实际：.+。.+', shown):
         return [shown]
     return [word for word in WORD.findall(CODE.sub(' ', shown)) if word not in NAMES]

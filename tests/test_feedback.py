@@ -235,7 +235,7 @@ def test_a_course_without_submissions_has_no_pages(tmp_path):
 
 @pytest.mark.slow
 def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
-    """Each of these formulas is searched for its end, from each of them on."""
+    """For each of these formulas, the rest of the text is searched for its end."""
     monkeypatch.setattr(module, 'LIMITS', Limits(cpu_sec=2))
     html = feedback(course, 'eve', answered(course, RIGHT, explained=r'<b>\begin{a}' * 40_000))
     assert 'Your text is shown as you typed it: it takes over 2 s of processor time' in html
@@ -277,7 +277,7 @@ def test_who_is_in_the_database_no_longer_has_no_page_and_costs_no_other(course)
 
 
 def test_what_nbgrader_needs_to_release_a_page_lies_beside_it(course):
-    """Its `release_feedback` reads both, and stops where one is not there."""
+    """Its `release_feedback` reads both files, and stops if one is missing."""
     graded = course.folder('autograded', 'ada', TOY)
     feedback(course, 'ada', answered(course, RIGHT))
     for name, text in (

@@ -46,7 +46,7 @@ def own(loop):
 
 @pytest.fixture
 def said(loop):
-    """Return what returns what a cell prints."""
+    """Return a function that runs a cell and returns what it prints."""
     return functools.partial(printed, loop)
 
 

@@ -1,4 +1,4 @@
-"""What kernels are forked from: what it holds, how long it lives, and where it can't be."""
+"""The process that forks kernels: what it contains, how long it runs, and when there is none."""
 
 import asyncio
 import json

@@ -200,7 +200,7 @@ def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, cap
 
 
 def test_a_result_is_not_stored_for_files_that_came_meanwhile(course, monkeypatch):
-    """It would be the score of what is not there any more."""
+    """It would be the score of files that are no longer there."""
     path = submit(course, 'ada', answered(course, RIGHT))
     looked = task.execute_exercises
 

@@ -168,7 +168,7 @@ def test_a_storing_that_fails_half_way_changes_nothing(course, monkeypatch):
 
 
 class Killed(BaseException):
-    """As from SIGKILL: nothing of ours takes notice of it."""
+    """As with SIGKILL: none of our code can handle it."""
 
 
 def kill_at(monkeypatch, step, when):
@@ -345,7 +345,7 @@ def test_what_stands_for_an_unreadable_submission_is_a_notebook_with_its_reason(
 
 
 def stored(course, student):
-    """Return the names of what lies in autograded/ of a student."""
+    """Return the names of the files in a student's folder in autograded/."""
     kept = course.folder('autograded', student, TOY)
     return sorted(path.name for path in kept.iterdir()) if kept.exists() else []
 

@@ -1,4 +1,4 @@
-"""A name that stays on the graph though its node has ended, and what tells it from a node."""
+"""A name that stays on the graph though its node has ended, and how it differs from a node."""
 
 from types import SimpleNamespace
 

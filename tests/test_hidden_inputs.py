@@ -81,7 +81,7 @@ def course(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def backend():
-    """Workers that are there for all of the hand-ins: beginning with each anew takes long."""
+    """Workers that are there for all of the hand-ins: starting new ones takes long."""
     with Workers() as workers:
         yield Standing(workers)
 
@@ -152,7 +152,7 @@ def test_a_visible_part_that_fails_later_is_told_in_full(course, backend):
 
 @pytest.fixture
 def told(monkeypatch):
-    """What the grader is handed over, in a hidden part."""
+    """What the grader receives from a hidden part."""
     details = []
     monkeypatch.setattr(hidden, '_quiet', True)
     monkeypatch.setattr(hidden, 'tell_grader', details.append)

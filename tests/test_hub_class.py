@@ -1,4 +1,4 @@
-"""A real hub with two students and an instructor: what becomes of their work, who hears whom."""
+"""A real hub with two students and an instructor: their work, and whose messages each receives."""
 
 import time
 

@@ -125,7 +125,7 @@ def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course
 
 
 def killed(found):
-    """Kill the workers that are at something, with all that they have begun."""
+    """Kill the workers that are grading, with all processes that they have started."""
     for process in found.below:
         if 'grader.workers.begin_worker' in ' '.join(_command(process)):
             process.kill()
@@ -133,7 +133,7 @@ def killed(found):
 
 
 def killed_servers(found):
-    """Kill what forks kernels."""
+    """Kill the processes that fork kernels."""
     for process in found.servers:
         with contextlib.suppress(psutil.NoSuchProcess):  # one may be on its way out
             process.kill()
@@ -142,7 +142,7 @@ def killed_servers(found):
 
 @pytest.fixture
 def slow_ones(course):
-    """Three who take long instead of one who never ends; to be listed before `run`."""
+    """Three slow submissions instead of one that never ends; list this fixture before `run`."""
     shutil.rmtree(course.folder('submitted', 'bob', ''))
     slowly = 'import time\n\ntime.sleep(3)\n\n\ndef double(x):\n    return 2 * x'
     for name in ('carl', 'dora', 'eve'):

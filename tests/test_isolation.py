@@ -1,4 +1,4 @@
-"""Where there is no sandbox: what is said, that nothing runs, and what is told when it must."""
+"""Without a sandbox: nothing runs and the message says why; with --trust-students, it warns."""
 
 import os
 import subprocess
@@ -63,7 +63,7 @@ def course(tmp_path_factory):
 
 
 def refusing(*options, says='Operation not permitted'):
-    """Stand in for subprocess.run where bwrap refuses some of its options."""
+    """Replace subprocess.run: bwrap refuses some of its options."""
 
     def run(command, **more):
         if command[0] == 'bwrap' and set(options) & set(command):

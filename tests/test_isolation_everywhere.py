@@ -1,4 +1,4 @@
-"""Where there is no sandbox, no way to have something graded runs what a student wrote."""
+"""Without a sandbox, no way of grading runs student code."""
 
 import os
 import subprocess

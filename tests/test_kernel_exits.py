@@ -1,4 +1,4 @@
-"""Kernels that end while they are graded: who is responsible, and what comes of it."""
+"""Kernels that end while they are graded: who is responsible, and which verdict follows."""
 
 import asyncio
 import contextlib

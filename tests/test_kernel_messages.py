@@ -131,7 +131,7 @@ TOO_LARGE = {
 def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(
     spare_kernel, run_cell, code, asked
 ):
-    """Else nothing that the kernel says would be received any more, and nobody told why."""
+    """Otherwise no more messages of the kernel would arrive, and nothing would say why."""
     result = run_cell(spare_kernel, code, expressions=asked)
     assert (result.cut_off, result.flooded, result.died) == (True, True, True)
     reply = json.loads(reply_of(result, within_sec=10.0))

@@ -56,7 +56,7 @@ def course(released, tmp_path):
 
 
 def grade(course, student, handed_in):
-    """Store a submission that earns 3 points; return its score, which lateness makes less."""
+    """Store a submission that earns 3 points; return its score, which is reduced if it is late."""
     path = submit(course, student, answered(course, 'def double(x):\n    return 2 * x'))
     if handed_in:
         path.with_name('timestamp.txt').write_text(handed_in)

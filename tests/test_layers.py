@@ -106,7 +106,7 @@ def test_what_students_get_needs_no_grader():
 
 
 def test_a_file_of_tests_takes_nothing_from_another_one():
-    """What several need is in a helper, tests/lab_browser.py say, or a fixture of conftest.py."""
+    """Shared code is in a helper, such as tests/lab_browser.py, or in a fixture of conftest.py."""
     helpers = {path.stem for path in (ROOT / 'tests').glob('*.py')}
     tests = {name for name in helpers if name.startswith('test_')}
     taken = [
@@ -129,7 +129,7 @@ def product():
 
 
 def test_a_module_is_short_enough_to_keep_in_mind():
-    """Where one has grown longer it has two subjects: give each a module, and name them."""
+    """A longer module has two subjects: give each subject a module and a name."""
     lines = {
         str(path.relative_to(ROOT)): len(path.read_text(encoding='utf-8').splitlines())
         for path in product()
@@ -139,7 +139,7 @@ def test_a_module_is_short_enough_to_keep_in_mind():
 
 
 def test_a_class_has_its_name_alone():
-    """Two that share one are two things with one word, or one thing twice.
+    """Two classes of one name are two things with the same name, or one thing twice.
 
     A protocol and what implements it have two names, too: GradingRooms and LocalRooms are Rooms.
     """

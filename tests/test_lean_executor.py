@@ -1,4 +1,4 @@
-"""The executor of a check's nodes: all that comes is dealt with, and what goes wrong is said."""
+"""The executor of a check's nodes: it handles everything that arrives, and reports errors."""
 
 import os
 import signal

@@ -44,7 +44,7 @@ stop()
 
 @pytest.mark.starts
 def test_run_and_spin_use_a_single_threaded_executor():
-    """Lesson 4; `rclpy.spin` takes the global one where it is given none."""
+    """Lesson 4; `rclpy.spin` takes the global one if it is given none."""
     done = subprocess.run(
         [sys.executable, '-c', EXECUTORS], capture_output=True, text=True, check=True
     )

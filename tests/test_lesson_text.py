@@ -1,4 +1,4 @@
-"""A lesson is checked once for each text of it, and what is wrong with it is said."""
+"""A lesson is checked once for each version of its text, and faults are reported."""
 
 import json
 

@@ -335,7 +335,7 @@ def test_what_a_grade_cell_calls_is_there(lesson):
 
 
 def test_nodes_obey_what_the_lessons_teach_or_say_why_not(lesson):
-    """Who publishes joint states sets stamp and frame, or a comment says that it does not."""
+    """Nodes that publish joint states set stamp and frame, or a comment says that they do not."""
     for cell in code_cells(lesson):
         source = TransformerManager().transform_cell(cell.source)
         for node in ast.walk(ast.parse(source)):
@@ -347,7 +347,7 @@ def test_nodes_obey_what_the_lessons_teach_or_say_why_not(lesson):
 
 
 def test_what_is_to_be_fixed_is_not_pointed_at(lesson):
-    """Hints stand above the node; none stands at the line that is broken, or beside it."""
+    """Hints are above the node; none is at the broken line or next to it."""
     for cell in code_cells(lesson):
         if '### BROKEN' in cell.source:
             released = broken(as_released(cell.source))

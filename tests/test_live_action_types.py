@@ -1,4 +1,4 @@
-"""What is no type of an action ends in words, and not in a crash of rclpy."""
+"""An object that is not an action type gives an error message instead of a crash of rclpy."""
 
 import pytest
 from geometry_msgs.msg import Point

@@ -91,7 +91,7 @@ def test_only_a_grading_room_keeps_a_network_of_its_own(room, expected):
 
 @pytest.mark.starts
 def test_who_sends_is_told_soon_that_a_message_has_arrived():
-    """Without a word of ours DDS asks after 3 s: so long took each message of a check."""
+    """Without our request, DDS asks only after 3 s, and each message of a check took that long."""
     classroom.enter()
     with running('ik_client'), Watcher() as watcher:
         publisher = watcher.node.create_publisher(Point, '/target_point', 10)

@@ -1,4 +1,4 @@
-"""What lies in a folder that students write into belongs to whoever Linux says, not to a name."""
+"""In a folder that students write to, the owner in Linux decides, not the name of a file."""
 
 import os
 import threading

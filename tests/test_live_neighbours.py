@@ -66,7 +66,7 @@ time.sleep(60)
 
 @pytest.mark.starts
 def test_who_was_killed_is_no_neighbour_any_more():
-    """It says nothing of its end, and is on the graph until its lease is over."""
+    """It does not announce its end, and stays on the graph until its lease expires."""
     neighbours = Neighbours()
     neighbours.meet()
     try:

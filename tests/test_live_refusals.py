@@ -1,4 +1,4 @@
-"""What `run` says to what it cannot run, and that nothing of it stays behind."""
+"""What `run` says if it cannot run something, and that nothing is left of it."""
 
 import math
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""What is known of a node that does not go on: what it raised, and where it stands still."""
+"""What is known about a node that has stopped: its exception, or the line where it waits."""
 
 import json
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""A real hub, and people whom a learning platform sends by LTI 1.3: who gets in, and as whom."""
+"""A real hub, and users sent to it by a platform with LTI 1.3: who may log in, and as whom."""
 
 import html
 import re

@@ -1,4 +1,4 @@
-"""Whose a file is and of which assignment: what the names of folders and files say."""
+"""The student and the assignment of a file, from the names of folders and files."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Whose a file is: the platform that it comes from decides, and not what a student named it."""
+"""The owner of a file: the platform decides, not the file name that a student chose."""
 
 import pytest
 from incoming_files import ADA, ASSIGNMENTS, BLACKBOARD, MALLORY, arriving, owners

@@ -1,4 +1,4 @@
-"""Which of several counts: the time that a platform or a file tells, and no other."""
+"""Which of several submissions counts: only the times of platforms and files decide."""
 
 import pytest
 from incoming_files import ADA, ASSIGNMENTS, BLACKBOARD, arriving, owners, time_of

@@ -159,7 +159,7 @@ def wheels(tmp_path_factory):
 
 
 def apart(course, environment, *command):
-    """Run a command of a course where there is no network."""
+    """Run a command of a course without a network."""
     return subprocess.run(
         [*NO_NETWORK, './course', *map(str, command)],
         cwd=course,
@@ -197,7 +197,7 @@ def test_the_bundle_is_set_up_and_builds_its_workspace(installer, wheels, tmp_pa
 
 @pytest.fixture(scope='module')
 def offline(wheels, tmp_path_factory):
-    """Run a command of the whole course, set up where there is no network."""
+    """Run a command of the whole course, set up without a network."""
     folder = tmp_path_factory.mktemp('whole')
     clone, environment = fresh_clone(folder / 'clone'), fresh_environment(folder)
     (folder / 'tools/uv').symlink_to(Path(sys.prefix, 'bin/uv'))

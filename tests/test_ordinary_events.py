@@ -1,4 +1,4 @@
-"""The ordinary events of a term, from what comes in to what is told, by the commands alone."""
+"""The ordinary events of a term, from submissions to feedback, only with the commands."""
 
 import csv
 import json

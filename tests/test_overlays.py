@@ -101,7 +101,7 @@ def built(tmp_path):
 
 
 def the_sentence(built, **variables):
-    """What an import says, and `ros2`: both say the same."""
+    """The error of an import, which is also that of `ros2`."""
     imported = built.python(f'import {NAME}.srv', **variables)
     assert imported.returncode == 1, imported.stdout
     kind, _, sentence = imported.stderr.splitlines()[-1].partition(': ')

@@ -1,4 +1,4 @@
-"""What counts of a package that is handed in, and what is said of the rest."""
+"""Which files of a submitted package count, and what the notes say about the others."""
 
 import os
 

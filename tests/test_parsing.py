@@ -1,4 +1,4 @@
-"""What strangers wrote is read in a process with limits."""
+"""Student files are read in a process with limits."""
 
 import io
 import json

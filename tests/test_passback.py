@@ -1,4 +1,4 @@
-"""What goes back to a course platform is in the form that it imports, and says who is left out."""
+"""Scores for a course platform have the form that it imports; messages name who is left out."""
 
 import csv
 import json
@@ -148,7 +148,7 @@ def test_canvas_gets_the_columns_up_to_the_section_and_one_of_scores(course, ros
 
 
 def test_a_row_that_ends_early_has_nothing_in_its_last_columns(course, roster):
-    """As where a roster was edited by hand: a spreadsheet leaves out what is empty."""
+    """As if a roster was edited by hand: a spreadsheet leaves out empty cells."""
     canvas_rows = canvas(
         course, '--roster', roster('Student,ID,Section', 'Class of 2026', 'Bob,2')
     )

@@ -1,4 +1,4 @@
-"""What ends a server of PostgreSQL, or keeps it from answering: nothing is lost, all is told."""
+"""What ends a server of PostgreSQL, or keeps it from answering: nothing is lost or hidden."""
 
 import functools
 import itertools
@@ -43,7 +43,7 @@ def course(tmp_path, postgresql):
 
 @pytest.fixture(scope='module')
 def handed_in(tmp_path_factory):
-    """A class that nobody has graded."""
+    """A class that is not graded yet."""
     course = released_course(tmp_path_factory.mktemp('class'))
     for student, factor in (('ada', 2), ('bob', 3), ('zoe', 2), ('李雷', 2)):
         text = f'# {student}\ndef double(x):\n    return {factor} * x'

@@ -1,4 +1,4 @@
-"""What is said of exceptions whose own words do not tell beginners what to do."""
+"""What the course adds to exceptions whose own text does not help beginners."""
 
 import inspect
 import math

@@ -96,7 +96,7 @@ def test_an_entry_has_any_name(course, inbound, at_once, name):
 
 
 def test_names_that_look_alike_are_two_entries(course, inbound, at_once):
-    """Else each would be taken for another content of the other, for ever."""
+    """Otherwise each would look like a changed version of the other, forever."""
     for name in (b'a\xff.ipynb', b'a\\xff.ipynb'):
         (inbound / os.fsdecode(name)).write_text('{}')
     assert len(serve_here(course, inbound)) == 2

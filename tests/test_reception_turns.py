@@ -1,4 +1,4 @@
-"""Who hands in much, or again and again, keeps nobody waiting and hides nobody."""
+"""A student who submits many files, or often, neither delays nor hides the others."""
 
 import shutil
 import time
@@ -35,7 +35,7 @@ def inbound(came_in):
 
 
 def test_what_a_later_one_replaces_delays_nobody_s_grading(course, inbound, at_once, monkeypatch):
-    """Each of many large ones takes its time to be kept: others' turns come in between."""
+    """Storing many large submissions takes long, so others are graded in between."""
     monkeypatch.setattr(desk_module, 'BUDGET_SEC', 0.0)
     monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)  # all have come in before the first turn
     place, placed = desk_module.put_in_place, []
@@ -123,7 +123,7 @@ def test_who_hands_in_much_waits_for_who_hands_in_something(desk, taken, monkeyp
 
 
 def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkeypatch):
-    """Where names alone tell whose an entry is, anybody can have many."""
+    """If only names decide whose an entry is, anybody can own many entries."""
     there, names = taken
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
     there.append(entry('ada 1', 'ada', 1))
@@ -137,7 +137,7 @@ def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkey
 def test_whose_many_files_take_long_to_look_at_keeps_nobody_from_being_seen(
     inbound, at_once, monkeypatch
 ):
-    """Neither with what is new nor with what was seen, and all of it comes in the end."""
+    """Neither new nor known files delay others, and all of them are collected in the end."""
     monkeypatch.setattr(rounds_module, 'MOST_FILES_AT_ONCE', 30)
     for number in range(20):
         folder = inbound / f'eve+00_toy+{number:02}'

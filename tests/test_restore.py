@@ -41,7 +41,7 @@ def by_grade_id(notebook):
 
 
 def assert_whole(restored, template):
-    """Every cell of the template once, in its order, with its own text where that counts."""
+    """Every cell of the template once, in its order, with its own text if that counts."""
     names = [grade_id(c) for c in template.notebook.cells if grade_id(c)]
     assert [grade_id(c) for c in restored.notebook.cells if grade_id(c)] == names
     cells = by_grade_id(restored.notebook)

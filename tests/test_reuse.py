@@ -1,4 +1,4 @@
-"""A result is used again where nothing that it depends on has changed."""
+"""A result is used again if nothing that it depends on has changed."""
 
 import sqlite3
 

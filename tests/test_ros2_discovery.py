@@ -1,4 +1,4 @@
-"""When a look at the graph may end: with everybody there, and all that they say they have."""
+"""When discovery may end: when all participants and all their announced endpoints are known."""
 
 import contextlib
 import re
@@ -164,7 +164,7 @@ class Clock:
 
 
 class Seen:
-    """Stands for an rclpy node that sees another participant's endpoint at given times.
+    """Replaces an rclpy node that discovers another participant's endpoint at given times.
 
     And for the reader of what participants say.
     """

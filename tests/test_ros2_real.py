@@ -1,4 +1,4 @@
-"""The same words to our `ros2` and to a real ros2cli, where there is one: the same output."""
+"""Our `ros2` and a real ros2cli, if there is one, print the same for the same command."""
 
 import os
 import re

@@ -214,7 +214,7 @@ endless = pytest.mark.parametrize('words', ENDLESS.values(), ids=ENDLESS)
 
 
 def wait_for_handlers(process):
-    """Until then it is Python that starts, and not the command."""
+    """Until then, Python is still starting, and the command does not run yet."""
     term = 1 << (signal.SIGTERM - 1)
     while True:
         with open(f'/proc/{process.pid}/status', encoding='ascii') as status:

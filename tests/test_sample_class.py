@@ -109,7 +109,7 @@ def sooner(names, these):
 
 
 class Standing:
-    """A backend that is there for several runs: beginning with each anew takes long."""
+    """A backend that is there for several runs: starting a new one each time would take long."""
 
     def __init__(self, backend):
         self.capacity, self.submit = backend.capacity, backend.submit
@@ -268,7 +268,7 @@ def test_validate_really_finds_it_changed(validated, name):
 
 
 def by_cell(notebook, found, name):
-    """What Validate says of each grade cell: its error, or '' where it passed."""
+    """What Validate says of each grade cell: its error, or '' if it passed."""
     assert found.keys() <= {'failed'}, (name, found)
     # shown in lines of their own, the same words
     errors = {c['source']: c['raw_error'].replace('\n', ' ') for c in found.get('failed', [])}

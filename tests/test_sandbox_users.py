@@ -1,4 +1,4 @@
-"""As which user student code runs, where root grades and where an ordinary user does."""
+"""As which user student code runs, if root grades and if an ordinary user does."""
 
 import os
 import subprocess
@@ -59,7 +59,7 @@ ORDINARY = 65_534
 
 
 def as_ordinary_user(home, code):
-    """Run Python as an ordinary user, who reaches no more of ours than the course."""
+    """Run Python as an ordinary user, who can read none of our files but the course."""
     home.chmod(0o777)
     code = f'import asyncio, sys\nsys.path.insert(0, {str(ROOT)!r})\n{code}\nasyncio.run(main())'
     reachable = ['--tmpfs', f'/{ROOT.parts[1]}', '--tmpfs', f'/{Path(sys.base_prefix).parts[1]}']

@@ -46,7 +46,7 @@ def test_what_is_refused_is_listed_until_it_is_gone_and_looked_into_where_it_com
 
 @pytest.fixture
 def refused_here(course, inbound):
-    """What looks for entries that are gone, and notes one that was refused, or so in part."""
+    """Finds entries that are gone, and records one that was refused, at least in part."""
     with opened_queue(course.gradebook, inbound) as queue:
         seen = {}
         desk = SimpleNamespace(inbound=inbound, queue=queue, seen=seen, say=lambda line: None)

@@ -1,4 +1,4 @@
-"""The stage of predictions stands where no process of a student is: nothing that it sends arrives.
+"""The stage of predictions is isolated: nothing that a student process sends arrives there.
 
 Their processes know every topic of it that DDS tells them of, publish there, and subscribe.
 """

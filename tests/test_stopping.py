@@ -21,7 +21,7 @@ def as_before():
 
 @pytest.fixture
 def told(monkeypatch, tmp_path):
-    """Run a command that is told to stop."""
+    """Run a command that receives a signal to stop."""
 
     def run(number):
         monkeypatch.setattr(

@@ -1,4 +1,4 @@
-"""What storing leaves out because it is known, and what it asks all the same."""
+"""Which database queries storing skips because the answer is known, and which it makes anyway."""
 
 import copy
 import sqlite3

@@ -1,4 +1,4 @@
-"""What tells submissions apart is read of plain files alone, and of so many."""
+"""Submissions are compared only by plain files, up to a maximum number."""
 
 import os
 
@@ -35,7 +35,7 @@ def test_nothing_is_followed_or_waited_for(folder):
 
 
 def test_an_earlier_one_is_read_once_and_again_where_it_has_changed(tmp_path, monkeypatch):
-    """All of them were read for each further one: who hands in often kept the others waiting."""
+    """All of them were read for each further one: frequent submissions delayed the others."""
     for number in range(3):
         (tmp_path / f'{number}/submitted').mkdir(parents=True)
         (tmp_path / f'{number}/submitted/a.ipynb').write_text(f'{number}')

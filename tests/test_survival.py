@@ -1,4 +1,4 @@
-"""Grading that is killed and started again loses nothing, and nothing comes out differently."""
+"""Grading that is killed and started again loses nothing, and no result differs."""
 
 import multiprocessing
 import random
@@ -44,7 +44,7 @@ def start():
 
 @pytest.fixture(scope='module')
 def handed_in(tmp_path_factory):
-    """A class that nobody has graded; one of it handed in more than a notebook."""
+    """A class that is not graded yet; one of it handed in more than a notebook."""
     course = released_course(tmp_path_factory.mktemp('survival'))
     for student, answer in (('ada', RIGHT), ('bob', WRONG), ('zoe', RIGHT)):
         notebook = submit(course, student, answered(course, answer.format(student)))
@@ -57,7 +57,7 @@ def handed_in(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def uninterrupted(handed_in, start, tmp_path_factory):
-    """What a run that nobody ended has stored, and how many calls it took."""
+    """What an uninterrupted run has stored, and how many calls it took."""
     folder = tmp_path_factory.mktemp('uninterrupted')
     course = fresh(handed_in, folder / 'gradebook')
     code, judged, lines = start(course, folder / 'log')

@@ -1,4 +1,4 @@
-"""How long code is waited for that gets too little of a processor, and code that sleeps."""
+"""How long the grader waits for code that gets too little of a processor, and code that sleeps."""
 
 import asyncio
 from types import SimpleNamespace

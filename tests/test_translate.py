@@ -356,7 +356,7 @@ def test_translations_keep_what_has_to_be_kept(language, part):
 
 @pytest.mark.parametrize(('language', 'part'), TRANSLATED)
 def test_no_two_places_of_a_sentence_touch(language, part):
-    """Nothing tells where the text in the first ends: a whole sentence for each case is sure."""
+    """The end of the text in the first place is unclear: write a whole sentence for each case."""
     if part in PARTS:
         known = read_translations(ROOT / 'locale', language, part)
         assert [english for english in known if '}{' in english] == []

@@ -51,7 +51,7 @@ def command(path, *options):
 
 
 def validated(path):
-    """What Validate says of a notebook, and what it said meanwhile."""
+    """What Validate reports about a notebook, at the end and meanwhile."""
     run = command(path, '--json')
     *progress, last = map(json.loads, run.stdout.splitlines())
     report = last['report']

@@ -91,7 +91,7 @@ def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, 
 
 
 def test_the_hint_is_the_one_of_this_reason(cell):
-    """A check may have met another failure before, and gone on."""
+    """A check may have had another failure before, and continued."""
     hints = 'see b', 'fix: that', 'fix: this'
     told = [new_output('display_data', {'application/vnd.my_robot_basics.hint': h}) for h in hints]
     run = failing(value='expected 1: 2, saw 2: 3: fix: this')
