@@ -163,7 +163,7 @@ class Clock:
         self.now += seconds
 
 
-class Seen:
+class FakeObserver:
     """Replaces an rclpy node that discovers another participant's endpoint at given times.
 
     And for the reader of what participants say.
@@ -229,23 +229,23 @@ def settled_after(monkeypatch, seen, *, present=2, here_only=True):
 )
 def test_it_ends_when_everybody_is_there(seen, present, here_only, expected_sec, monkeypatch):
     took_sec, _ = settled_after(
-        monkeypatch, Seen(Clock(), **seen), present=present, here_only=here_only
+        monkeypatch, FakeObserver(Clock(), **seen), present=present, here_only=here_only
     )
     assert took_sec == pytest.approx(expected_sec, abs=discovery.POLL_SEC * 1.5)
 
 
 def test_who_is_missing_is_asked_less_and_less_often(monkeypatch):
-    _, asked = settled_after(monkeypatch, Seen(Clock(), said_at=0.4))
+    _, asked = settled_after(monkeypatch, FakeObserver(Clock(), said_at=0.4))
     assert asked == pytest.approx([0.0, 0.05, 0.15, 0.35], abs=discovery.POLL_SEC * 3.5)
 
 
 def test_where_nobody_is_missing_nobody_is_asked(monkeypatch):
-    _, asked = settled_after(monkeypatch, Seen(Clock(), endpoint_at=0.4))
+    _, asked = settled_after(monkeypatch, FakeObserver(Clock(), endpoint_at=0.4))
     assert asked == []
 
 
 def test_a_graph_that_never_rests_ends_too(monkeypatch):
-    seen = Seen(Clock())
+    seen = FakeObserver(Clock())
     seen.get_node_names_and_namespaces = lambda: [('talker', '/'), (f'n{seen.clock.now}', '/')]
     took_sec, _ = settled_after(monkeypatch, seen)
     assert took_sec == pytest.approx(discovery.MOST_SEC, abs=discovery.POLL_SEC * 1.5)

@@ -46,7 +46,7 @@ def messages_in(source: str, *, title: bool = False) -> list[str]:
     for node in told:
         if title and (docstring := ast.get_docstring(node)):
             found.append(docstring.partition('\n')[0])
-    words = (word for node in ast.walk(tree) for word in _told(node))
+    words = (word for node in ast.walk(tree) for word in _shown_words(node))
     return list(dict.fromkeys([*found, *words]))
 
 
@@ -89,7 +89,7 @@ def _visit(node: ast.AST) -> Iterator[str]:
         yield from _visit(child)
 
 
-def _told(node: ast.AST) -> Iterator[str]:
+def _shown_words(node: ast.AST) -> Iterator[str]:
     """Yield single words that are shown.
 
     They are those that code chooses between, and what a check expected or saw. A word needs

@@ -56,7 +56,9 @@ class OutputWords:
         if page.startswith(PICTURE):
             self._picture(output)
         elif page.startswith(DOCTOR):
-            data['text/html'] = _TEXT.sub(lambda found: found[1] or self._told(found[2]), page)
+            data['text/html'] = _TEXT.sub(
+                lambda found: found[1] or self._translate_html(found[2]), page
+            )
         elif page.startswith(PANEL):
             data['text/plain'] = self._panel(data['text/plain'])
             tag, end, _ = page.partition('>')
@@ -81,7 +83,7 @@ class OutputWords:
     def _say(self, text: str) -> str:
         return self._sentences.translate(text)
 
-    def _told(self, text: str) -> str:
+    def _translate_html(self, text: str) -> str:
         """Translate a text in the topic doctor's HTML."""
         said = html.unescape(text.strip())
         shown = self._say(said.removesuffix(':'))

@@ -74,7 +74,7 @@ def copy(source: IO[bytes], target: IO[bytes], *, most: int) -> bool:
     return True
 
 
-class _Careful(io.FileIO):
+class _BoundedReads(io.FileIO):
     """A file from which a single read can't get much, whatever length the archive claims."""
 
     def read(self, size: int | None = -1) -> bytes:
@@ -84,7 +84,7 @@ class _Careful(io.FileIO):
 
 
 def _zipped(archive: Path) -> Iterator[ArchiveEntry]:
-    with _Careful(archive) as raw, zipfile.ZipFile(raw) as box:
+    with _BoundedReads(archive) as raw, zipfile.ZipFile(raw) as box:
         for info in box.infolist():
             if info.is_dir():
                 continue
@@ -123,8 +123,8 @@ def _tarred(
 ) -> Iterator[ArchiveEntry]:
     with tempfile.TemporaryDirectory(dir=aside) as folder:
         plain = Path(folder, 'plain.tar')
-        _lay_bare(archive, plain, name=name, left=left)
-        with _Careful(plain) as raw, tarfile.open(fileobj=raw, mode='r:') as box:
+        _decompress(archive, plain, name=name, left=left)
+        with _BoundedReads(plain) as raw, tarfile.open(fileobj=raw, mode='r:') as box:
             while (info := box.next()) is not None:
                 box.members.clear()  # type: ignore[attr-defined]  # typeshed has no such attribute; a million headers need no memory
                 if info.isdir():
@@ -143,7 +143,7 @@ def _tarred(
                 raise Refused('broken: it ends too early, or is no tar any more')
 
 
-def _lay_bare(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> None:
+def _decompress(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> None:
     """Decompress a tar; all its bytes count, because there may be a thousand like it."""
     most = min(left.bytes, left.tar_bytes)
     if most <= 0:

@@ -33,7 +33,7 @@ _CHUNK = 1 << 20
 
 
 @dataclass(frozen=True)
-class _Within:
+class _ParentFolder:
     """What is known about the folder that contains an entry."""
 
     descriptor: int
@@ -69,11 +69,11 @@ class LiveFolder:
         with _closing(os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)) as descriptor:
             yield from self._entry(_outermost(descriptor, (), trusted), name)
 
-    def _entries(self, within: _Within) -> Iterator[Incoming]:
+    def _entries(self, within: _ParentFolder) -> Iterator[Incoming]:
         for name in sorted(os.listdir(within.descriptor)):
             yield from self._entry(within, name)
 
-    def _entry(self, within: _Within, name: str) -> Iterator[Incoming]:
+    def _entry(self, within: _ParentFolder, name: str) -> Iterator[Incoming]:
         parts = (*within.parts, name)
         self.left.files -= 1
         if self.left.files < 0:
@@ -98,7 +98,7 @@ class LiveFolder:
             yield Incoming(parts, problem=f'it cannot be read: {error.strerror}')
 
     def _opened(
-        self, within: _Within, parts: tuple[str, ...], descriptor: int
+        self, within: _ParentFolder, parts: tuple[str, ...], descriptor: int
     ) -> Iterator[Incoming]:
         status = os.fstat(descriptor)
         foreign = status.st_uid not in within.trusted
@@ -127,7 +127,7 @@ class LiveFolder:
         elif len(parts) > MAX_PARTS:
             yield Incoming(parts, problem=f'it is more than {MAX_PARTS} folders deep')
         else:
-            inner = _Within(
+            inner = _ParentFolder(
                 descriptor,
                 parts,
                 within.trusted,
@@ -159,10 +159,12 @@ class LiveFolder:
         return (None if problem else Path(target.name)), problem
 
 
-def _outermost(descriptor: int, above: tuple[str, ...], trusted: Iterable[int] = ()) -> _Within:
+def _outermost(
+    descriptor: int, above: tuple[str, ...], trusted: Iterable[int] = ()
+) -> _ParentFolder:
     status = os.fstat(descriptor)
     users = frozenset({0, os.geteuid(), status.st_uid, *trusted})
-    return _Within(descriptor, above, users, _is_shared(status))
+    return _ParentFolder(descriptor, above, users, _is_shared(status))
 
 
 def _is_shared(status: os.stat_result) -> bool:

@@ -52,7 +52,7 @@ class ChosenFiles:
         """Return what the student is told."""
         if self.problem:
             return [f'the package `{package}` was not collected: {self.problem}']
-        told = [package_files.told(each.path, reason) for each, reason in self.left]
+        told = [package_files.left_out_clause(each.path, reason) for each, reason in self.left]
         start = f'of the package `{package}` was not collected: '
         return [start + clause for clause in package_files.few(told)]
 

@@ -20,7 +20,7 @@ FORMATS = ('isoduration', 'rfc3986_validator', 'rfc3987', 'rfc3987_syntax')
 formats: ours do not, nor do nbformat's."""
 
 
-class _Unmade(ModuleType):
+class _LazyModule(ModuleType):
     """A module whose code runs when one of its names is used first.
 
     With importlib's LazyLoader, the next import of it, or of a module in it, would run the code.
@@ -55,7 +55,7 @@ def leave_out_servers() -> None:
         spec = None if name in sys.modules else importlib.util.find_spec(name)
         if spec is None:
             continue
-        module = _Unmade(name)
+        module = _LazyModule(name)
         module.__spec__, module.__loader__, module.__file__ = spec, spec.loader, spec.origin
         module.__package__ = spec.parent
         if spec.submodule_search_locations is not None:

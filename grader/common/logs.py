@@ -16,13 +16,15 @@ class VisibleFilter(logging.Filter):
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Change a record; it is always logged."""
-        record.msg, record.args = _told(record.getMessage()), None
+        record.msg, record.args = _without_password(record.getMessage()), None
         if record.exc_info:
-            record.exc_text = _told(logging.Formatter().formatException(record.exc_info))
+            record.exc_text = _without_password(
+                logging.Formatter().formatException(record.exc_info)
+            )
         return True
 
 
-def _told(text: str) -> str:
+def _without_password(text: str) -> str:
     """Return a text to log: nbgrader's `db upgrade` logs the URL with its password."""
     return visible(_PASSWORD.sub(r'\1***@', text))
 

@@ -101,7 +101,7 @@ class GradingKernel:
                 used_sec,
             )
             if result.timed_out and connection.is_cut_off:
-                result.timed_out = result.cut_off = await self._lives_on()
+                result.timed_out = result.cut_off = await self._still_runs()
                 if result.cut_off:
                     self._ended_by_us = True
                     await self._kill()
@@ -158,7 +158,7 @@ class GradingKernel:
         """Return the provisioner of a sandboxed kernel: its kernelspec names this class."""
         return cast(SandboxProvisioner, self._manager.provisioner)
 
-    async def _lives_on(self) -> bool:
+    async def _still_runs(self) -> bool:
         """Whether the kernel still runs; wait first, because it may be about to end."""
         moment = asyncio.ensure_future(asyncio.sleep(_END_SEC))
         try:

@@ -89,15 +89,15 @@ class Tally:
 
 
 @dataclass(frozen=True)
-class _Said:
+class _VerdictsOfOne:
     """The part of a graded notebook that is kept: whole notebooks would fill the memory."""
 
     problem: str
     verdicts: dict[str, dict]
 
 
-def _said(graded: NotebookNode) -> _Said:
-    return _Said(graded.metadata.get(KEY, {}).get('problem') or '', verdicts_in(graded))
+def _verdicts_of(graded: NotebookNode) -> _VerdictsOfOne:
+    return _VerdictsOfOne(graded.metadata.get(KEY, {}).get('problem') or '', verdicts_in(graded))
 
 
 def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
@@ -106,7 +106,7 @@ def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
     of_cells = defaultdict(list)
     for record in records(course, only=whose.keys()):
         of_cells[record.student_id, record.assignment].append(record)
-    said = {each: _said(graded_notebook(course, *each)) for each in whose}
+    said = {each: _verdicts_of(graded_notebook(course, *each)) for each in whose}
     failures = list(_failures(said))
     looks = grouped(_looks(rows, of_cells, said))
     return Tally(
@@ -167,7 +167,7 @@ def _check(
     )
 
 
-def _failures(all_said: dict[tuple[str, str], _Said]) -> Iterable[CellMessage]:
+def _failures(all_said: dict[tuple[str, str], _VerdictsOfOne]) -> Iterable[CellMessage]:
     for whose, said in all_said.items():
         for name, verdict in said.verdicts.items():
             if verdict.get('outcome') in ('partial', 'failed'):
@@ -179,7 +179,7 @@ def _failures(all_said: dict[tuple[str, str], _Said]) -> Iterable[CellMessage]:
 def _looks(
     rows: Sequence[SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
-    all_said: dict[tuple[str, str], _Said],
+    all_said: dict[tuple[str, str], _VerdictsOfOne],
 ) -> Iterable[CellMessage]:
     for row in rows:
         whose = row.student_id, row.assignment

@@ -45,7 +45,7 @@ def seccomp_filter(*, counted: bool = True) -> bytes:
         (_LOAD, 0, 0, _NUMBER_AT),
     ]
     closer = {'socket': _sockets(), 'socketpair': _pairs(), 'clone': _no_namespaces()}
-    closer['seccomp'] = _a_listener()
+    closer['seccomp'] = _only_with_listener()
     if not counted:
         closer['mmap'] = _no_hidden_memory()
     for name, instructions in closer.items():
@@ -83,7 +83,7 @@ def _no_namespaces() -> list[Instruction]:
     return [_argument(0), (_ANY_BIT, 0, 1, _NAMESPACES), refused, fine]
 
 
-def _a_listener() -> list[Instruction]:
+def _only_with_listener() -> list[Instruction]:
     """Allow only a filter with a listener: `signals` sets that one, and Linux takes no second."""
     refused, fine = (_RETURN, 0, 0, _ERROR | EPERM), (_RETURN, 0, 0, _ALLOW)
     return [_argument(1), (_EQUAL, 1, 0, _NEW_LISTENER), refused, fine]

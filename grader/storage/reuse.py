@@ -26,7 +26,10 @@ _UNDER = 'graded_under'
 
 def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
     """Return a hash of all that the results of all students of an assignment depend on."""
-    lesson = [_said(course.source(assignment)), _said(course.release(assignment))]
+    lesson = [
+        _cells_without_outputs(course.source(assignment)),
+        _cells_without_outputs(course.release(assignment)),
+    ]
     return _digest(json.dumps([lesson, isolated, machinery()], sort_keys=True).encode())
 
 
@@ -106,7 +109,7 @@ def _checks(notebook: NotebookNode) -> list[NotebookNode]:
     return [cell for cell in notebook.cells if role(cell) == 'grade' and cell.cell_type == 'code']
 
 
-def _said(notebook: NotebookNode) -> list:
+def _cells_without_outputs(notebook: NotebookNode) -> list:
     """Return the cells of a lesson, without their outputs."""
     return [(c.cell_type, c.source, c.get('id'), c.metadata) for c in notebook.cells]
 

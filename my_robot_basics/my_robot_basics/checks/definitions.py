@@ -91,7 +91,7 @@ class Definitions:
             fail(
                 expected='each text to define what its table says',
                 seen=seen,
-                hint='; '.join(self._told(name) for name in wrong),
+                hint='; '.join(self._faults_in_words(name) for name in wrong),
                 earned=earned,
             )
 
@@ -116,7 +116,7 @@ class Definitions:
         self._faults[name] += faults
         self._failed_already |= bool(faults) and not is_quiet()
 
-    def _told(self, name: str) -> str:
+    def _faults_in_words(self, name: str) -> str:
         faults = self._faults[name]
         rest = len(faults) - MOST_FAULTS
         more = [f'and {rest} more'] if rest > 0 else []

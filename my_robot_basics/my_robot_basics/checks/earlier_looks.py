@@ -54,7 +54,7 @@ def look_once(wanted: Wanted, look: Callable[[Look | None], Look]) -> Look:
     """
     global _last
     if _last is not None and _serves(_last, wanted):
-        return _again(_last.look, wanted.seconds)
+        return _reused_look(_last.look, wanted.seconds)
     earlier, _last = _on_wall(_last, wanted), None
     try:
         found = look(earlier)
@@ -92,7 +92,7 @@ def _is_whole(recording: Recording) -> bool:
     return not recording.is_makeshift and not recording.has_ended
 
 
-def _again(look: Look | CheckFailed, seconds: float) -> Look:
+def _reused_look(look: Look | CheckFailed, seconds: float) -> Look:
     if isinstance(look, CheckFailed):
         assert look.repeat is not None  # look_once keeps only failures that can be repeated
         look.repeat()

@@ -96,7 +96,7 @@ class Relay:
                     self._expect_out(watcher, recorder, message, raised, before=before)
                     # if a second copy comes, it comes right after the first
                     watcher.spin_for(QUIET_SEC)
-                    count = list(map(self._what, recorder.messages())).count(self._what(message))
+                    count = list(map(self._part, recorder.messages())).count(self._part(message))
                     if count > 1:
                         self._fail(*RelayFaults(copies=count).fault())
                     if number + 1 == times:
@@ -120,7 +120,7 @@ class Relay:
             watcher,
             recorder,
             publish=publisher.publish,
-            what=self._what,
+            what=self._part,
             others_publish=source_recorder.has_other_publishers(recorder),
             earlier=earlier,
         )
@@ -170,12 +170,12 @@ class Relay:
         again: Publisher | None = None,
     ) -> None:
         """Wait for the message on `to`, after `before` others; send it `again` meanwhile."""
-        what, topic_name = self._what(message), self.to
+        what, topic_name = self._part(message), self.to
         for times in free_turns(LOST_SEC):
             if again is not None and (times <= OFTEN or times % SELDOM == 0):
                 again.publish(message)
             if watcher.spin_until(
-                lambda: any(self._what(each) == what for each in recorder.messages()),
+                lambda: any(self._part(each) == what for each in recorder.messages()),
                 timeout_sec=AGAIN_SEC,
             ):
                 return
@@ -193,7 +193,7 @@ class Relay:
             else f'no message arrives on {topic_name}',
         )
 
-    def _what(self, message: Any) -> Hashable:
+    def _part(self, message: Any) -> Hashable:
         """The part of a message that must come out unchanged: all of it, or `fields`."""
         if self.fields:
             message = type(message)(**{name: getattr(message, name) for name in self.fields})

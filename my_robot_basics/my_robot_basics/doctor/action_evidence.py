@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from my_robot_basics.doctor.evidence import Endpoint, Seen
+from my_robot_basics.doctor.evidence import Endpoint, GraphEvidence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,7 +17,7 @@ class StandingGoal:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ActionEvidence(Seen):
+class ActionEvidence(GraphEvidence):
     """The graph around one action, and what its server publishes about its goals."""
 
     KINDS, OF = ('client', 'server'), 'of'

@@ -54,7 +54,7 @@ def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
     )
 
 
-class _Told:
+class _ActionRecorder:
     """What the server of an action publishes about its goals, and what nodes log."""
 
     def __init__(self, node: Node, name: str, type_name: str) -> None:
@@ -106,7 +106,7 @@ def look(watcher: Watcher, name: str, *, domain_id: int, look_sec: float) -> Act
     """
     endpoints = endpoints_of(watcher.node)
     servers = [end for end in endpoints if (end.kind, end.name) == ('server', name)]
-    told = _Told(watcher.node, name, servers[0].type_name if servers else '')
+    told = _ActionRecorder(watcher.node, name, servers[0].type_name if servers else '')
     watch, view = Stopwatch(), Inside()
     while watch.free_sec() < STATUS_SEC or (
         told.states.keys() - told.moving and not _is_long(watch, look_sec)

@@ -72,7 +72,7 @@ class Remap:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Seen:
+class GraphEvidence:
     """The graph around one topic, service or action."""
 
     name: str
@@ -116,7 +116,7 @@ class Seen:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Evidence(Seen):
+class Evidence(GraphEvidence):
     """The graph around one topic, and what was received on it."""
 
     KINDS, OF = ('publisher', 'subscription'), 'on'
@@ -188,5 +188,5 @@ class Finding:
 class Diagnosis:
     """The evidence and its findings, the likeliest first; without findings, all is well."""
 
-    evidence: Seen
+    evidence: GraphEvidence
     findings: tuple[Finding, ...]

@@ -5,7 +5,14 @@ from functools import partial
 from wcwidth import ljust
 
 from my_robot_basics.doctor.action_evidence import ActionEvidence
-from my_robot_basics.doctor.evidence import VERBS, Diagnosis, Evidence, Finding, Kind, Seen
+from my_robot_basics.doctor.evidence import (
+    VERBS,
+    Diagnosis,
+    Evidence,
+    Finding,
+    GraphEvidence,
+    Kind,
+)
 from my_robot_basics.doctor.service_evidence import ServiceEvidence
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.lines import in_lines
@@ -50,7 +57,7 @@ def opening(diagnosis: Diagnosis, language: str) -> str:
     return in_language(language, said)
 
 
-def summary(evidence: Seen) -> str:
+def summary(evidence: GraphEvidence) -> str:
     """Return in one clause which nodes use the name, and what was observed of them."""
     first, second = evidence.KINDS if isinstance(evidence, Evidence) else evidence.KINDS[::-1]
     told = f'{_names(evidence, first)}, {_names(evidence, second)}'
@@ -94,7 +101,7 @@ def _lost(evidence: ServiceEvidence) -> str:
     )
 
 
-def _names(evidence: Seen, kind: Kind) -> str:
+def _names(evidence: GraphEvidence, kind: Kind) -> str:
     names = sorted({end.node_name for end in evidence.ends(kind)})
     if not names:
         return f'nobody {VERBS[kind]}'

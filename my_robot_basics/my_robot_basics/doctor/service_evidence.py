@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from my_robot_basics.doctor.evidence import Endpoint, Seen
+from my_robot_basics.doctor.evidence import Endpoint, GraphEvidence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,7 +17,7 @@ class Unanswered:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ServiceEvidence(Seen):
+class ServiceEvidence(GraphEvidence):
     """The graph around one service, and what its nodes do, as far as this process can observe."""
 
     KINDS, OF = ('client', 'server'), 'of'

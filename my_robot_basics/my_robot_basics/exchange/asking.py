@@ -16,7 +16,7 @@ def wait_for_turn() -> None:
     send(wire.request(op='raised', name=wire.THREADS))
 
 
-def told(question: str) -> Any:
+def reply_value(question: str) -> Any:
     """Return the value that the notebook answers, or None if its reply has none."""
     try:
         kind, body = wire.parse_reply(send(question))

@@ -4,13 +4,13 @@ They tell students where to look; the verdict depends only on what the check obs
 """
 
 from my_robot_basics.exchange import wire
-from my_robot_basics.exchange.asking import told
+from my_robot_basics.exchange.asking import reply_value
 from my_robot_basics.feedback.errors import shorten
 
 
 def last_raised(node_name: str) -> str:
     """Return the last exception of that node's callbacks, '' if the notebook reports none."""
-    body = told(wire.request(op='trouble', name=node_name))
+    body = reply_value(wire.request(op='trouble', name=node_name))
     return shorten(body) if isinstance(body, str) else ''
 
 
@@ -19,18 +19,18 @@ def unpublished_field(node_name: str) -> tuple[str, str]:
 
     If the field is '', the other text says how to make the object that `publish` expects.
     """
-    body = told(wire.request(op='field', name=node_name))
+    body = reply_value(wire.request(op='field', name=node_name))
     is_told = isinstance(body, tuple) and [type(text) for text in body] == [str, str]
     return (shorten(body[0], 60), shorten(body[1], 60)) if is_told else ('', '')
 
 
 def times_raised(node_name: str) -> int:
     """Return how often that node's callbacks raised, 0 if the notebook reports nothing."""
-    body = told(wire.request(op='raised', name=node_name))
+    body = reply_value(wire.request(op='raised', name=node_name))
     return body if type(body) is int else 0
 
 
 def unfinished(node_name: str) -> str:
     """Return the line at which a callback of that node blocks all others, or ''."""
-    body = told(wire.request(op='unfinished', name=node_name))
+    body = reply_value(wire.request(op='unfinished', name=node_name))
     return shorten(body) if isinstance(body, str) else ''

@@ -8,7 +8,7 @@ import builtins
 from typing import Any
 
 from my_robot_basics.exchange import values, wire
-from my_robot_basics.exchange.asking import send, told
+from my_robot_basics.exchange.asking import reply_value, send
 from my_robot_basics.exchange.expected_types import (
     brief,
     check_type,
@@ -102,7 +102,7 @@ def has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
 def publishes(topic_name: str) -> bool:
     """Whether the notebook's process reports a publisher, possibly before the graph shows it."""
     request = wire.request(op='endpoint', name=topic_name, args=('publishers', ''))
-    return told(request) is True
+    return reply_value(request) is True
 
 
 def settled_nodes() -> list[str] | None:
@@ -111,7 +111,7 @@ def settled_nodes() -> list[str] | None:
     It saves waiting for what can't come; the verdict depends on the graph.
     """
     question = wire.request(op='settled', name='', args=(hidden.checked_for_sec(),))
-    body = told(question)
+    body = reply_value(question)
     is_told = isinstance(body, list) and all(isinstance(name, str) for name in body)
     return body if is_told else None
 
@@ -122,7 +122,7 @@ def set_use_sim_time(node_name: str, value: bool) -> bool | None:
     None if that process has no such node, or does not answer, or the node refuses. It serves
     nodes without parameter services; the verdict depends on what the node publishes.
     """
-    body = told(wire.request(op='clock', name=node_name, args=(value,)))
+    body = reply_value(wire.request(op='clock', name=node_name, args=(value,)))
     return body if isinstance(body, bool) else None
 
 
@@ -133,7 +133,7 @@ def ask_package(package: str, verb: str, *args: object) -> dict[str, Any]:
     evidence. The check observes over DDS what a package does.
     """
     interactions.note()
-    body = told(wire.request(op='package', name=package, args=(verb, *args)))
+    body = reply_value(wire.request(op='package', name=package, args=(verb, *args)))
     is_told = isinstance(body, dict) and all(isinstance(key, str) for key in body)
     return body if is_told else {}
 

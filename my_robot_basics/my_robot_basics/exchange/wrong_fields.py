@@ -18,7 +18,7 @@ def wrong_field(message: Any, type_: type) -> tuple[str, str, str]:
     """
     for field, wanted in message.get_fields_and_field_types().items():
         value = getattr(message, field)
-        if _travels(type_(), field, value):
+        if _can_serialize(type_(), field, value):
             continue
         if type(value) is type(getattr(type_(), field)) and hasattr(value, _FIELDS):
             inner, held, type_name = wrong_field(value, type(value))
@@ -28,7 +28,7 @@ def wrong_field(message: Any, type_: type) -> tuple[str, str, str]:
     return '', '', ''
 
 
-def _travels(message: object, field: str, value: object) -> bool:
+def _can_serialize(message: object, field: str, value: object) -> bool:
     from rclpy.serialization import serialize_message
 
     try:

@@ -128,7 +128,7 @@ def tell_points(earned: float) -> None:
 
 def points_in(outputs: Iterable[Any]) -> float:
     """Return the points that a cell's outputs report; 0 if they report none."""
-    return float(next(iter(_said(outputs, _POINTS)), 0.0))
+    return float(next(iter(_data(outputs, _POINTS)), 0.0))
 
 
 def tell_hint(hint: str) -> None:
@@ -139,7 +139,7 @@ def tell_hint(hint: str) -> None:
 
 def hint_in(outputs: Iterable[Any], reason: str) -> str:
     """Return the hint at a reason's end, if the cell's outputs report it; else ''."""
-    return next((said for said in _said(outputs, _HINT) if reason.endswith(f': {said}')), '')
+    return next((said for said in _data(outputs, _HINT) if reason.endswith(f': {said}')), '')
 
 
 @contextmanager
@@ -155,38 +155,38 @@ def said_in_full() -> Iterator[None]:
 
 def has_started(outputs: Iterable[Any]) -> bool:
     """Whether a cell with these outputs reached its hidden part."""
-    return _BEGAN in _said(outputs, _MARK)
+    return _BEGAN in _data(outputs, _MARK)
 
 
 def failed_only_there(outputs: Iterable[Any]) -> bool:
     """Whether a failed check failed in its hidden part, and not in the visible one."""
-    said = _said(outputs, _MARK)
+    said = _data(outputs, _MARK)
     return _BEGAN in said and _ALREADY not in said
 
 
 def has_told_inputs(outputs: Iterable[Any]) -> bool:
     """Whether the hidden part chose inputs, so that the student's code knows them now."""
-    said = _said(outputs, _MARK)
+    said = _data(outputs, _MARK)
     return _BEGAN in said and _INPUTS in said
 
 
 def details_in(outputs: Iterable[Any]) -> str:
     """Return the sentence for the instructor in a cell's outputs, or ''."""
-    return next(iter(_said(outputs, _DETAILS)), '')[:MOST_DETAILS]
+    return next(iter(_data(outputs, _DETAILS)), '')[:MOST_DETAILS]
 
 
 def shown(outputs: Sequence[Any]) -> list[Any]:
     """Return the outputs before the hidden part, without displays for the grader."""
     kept = []
     for output in outputs:
-        if _BEGAN in _said([output], _MARK):
+        if _BEGAN in _data([output], _MARK):
             break
         if not _is_for_the_grader(output):
             kept.append(output)
     return kept
 
 
-def _said(outputs: Iterable[Any], mime: str) -> list[str]:
+def _data(outputs: Iterable[Any], mime: str) -> list[str]:
     return [out['data'][mime] for out in outputs if mime in (out.get('data') or ())]
 
 

@@ -17,7 +17,10 @@ def show_definition(text: str, *, own_types: Collection[str] = (), package: str 
     `package` is the file's package, and `own_types` has the names of its messages.
     """
     lines = [
-        (shorten(line), _told(meaning) if isinstance(meaning, DefinedMember) else meaning)
+        (
+            shorten(line),
+            _describe_member(meaning) if isinstance(meaning, DefinedMember) else meaning,
+        )
         for line, meaning in meanings(text, package=package, own_types=own_types)
     ]
     width = min(_WIDTH, max((len(line) for line, _ in lines), default=0))
@@ -25,16 +28,16 @@ def show_definition(text: str, *, own_types: Collection[str] = (), package: str 
         print(f'{line:<{width}}  {in_language_here(words)}'.rstrip())
 
 
-def _told(member: DefinedMember) -> str:
+def _describe_member(member: DefinedMember) -> str:
     if member.is_constant:
         return f'constant {member.name}, {member.type}, always {member.value!r}'
-    type_ = _told_type(member.type)
+    type_ = _describe_type(member.type)
     if member.value is None:
         return f'field {member.name}, {type_}'
     return f'field {member.name}, {type_}, {member.value!r} if nobody sets it'
 
 
-def _told_type(type_: object) -> str:
+def _describe_type(type_: object) -> str:
     """Return a type in words: 'exactly 2 float64'."""
     name, brackets, size = str(type_).partition('[')
     size = size.removesuffix(']')

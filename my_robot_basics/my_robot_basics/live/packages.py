@@ -37,7 +37,7 @@ def build_package(name: str) -> None:
     else:
         built = Build(name, None, _no_folder(name))
     _builds[name] = built
-    tell(_said_of(built), in_one=False)
+    tell(_build_message(built), in_one=False)
     for clause in built.left_out:
         tell(f'not handed in, and not built: {clause}', in_one=False)
 
@@ -89,7 +89,7 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
     number: its exit code, None while it runs, and last output. 'signal', number, name: send that.
     """
     if verb == 'built':
-        return _told_of(_builds.get(package))
+        return _build_reply(_builds.get(package))
     if verb == 'start':
         name, arguments = args
         executables.stop_started(package=package, by_notebook_alone=True)
@@ -109,7 +109,7 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
     return {'code': code, 'said': '\n'.join(found.process.lines)[-MOST_SAID:]}
 
 
-def _told_of(built: Build | None) -> dict[str, Any]:
+def _build_reply(built: Build | None) -> dict[str, Any]:
     if built is None:
         return {'status': None, 'problem': '', 'words': '', 'executables': [], 'found': False}
     return {
@@ -121,7 +121,7 @@ def _told_of(built: Build | None) -> dict[str, Any]:
     }
 
 
-def _said_of(built: Build) -> str:
+def _build_message(built: Build) -> str:
     if built.problem:
         return built.problem
     where = shown(package_build.prefix_of(built.package))

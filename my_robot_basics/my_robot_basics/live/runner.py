@@ -40,7 +40,7 @@ _lock = threading.RLock()
 _is_set_up = False
 
 
-class _LivesElsewhere(Exception):
+class _NotStartedByLive(Exception):
     """A node of that name exists already, and `live` has not started it."""
 
 
@@ -75,7 +75,7 @@ def launch(
     def on_name(name: str) -> None:
         _stop_keys([k for k, b in _running.items() if b.node.get_fully_qualified_name() == name])
         if _neighbours.have(name):
-            raise _LivesElsewhere(name)
+            raise _NotStartedByLive(name)
         panel.listen(name)
 
     node = NodeClass.__new__(NodeClass, *args, **kwargs)
@@ -86,7 +86,7 @@ def launch(
             raise TypeError(f"__init__() should return None, not '{type(returned).__name__}'")
         if not is_made(node):
             raise NotRunnable(no_node_yet(NodeClass))
-    except _LivesElsewhere as found:
+    except _NotStartedByLive as found:
         tell(
             f'a node named {found} already runs outside live: no second one was started. '
             'Stop that one first, or give yours another name.'

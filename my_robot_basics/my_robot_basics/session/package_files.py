@@ -48,7 +48,7 @@ def read(folder: Path) -> PackageFiles:
         if seen > MOST_SEEN:
             return PackageFiles({}, (), f'it has more than {MOST_SEEN:,} files and folders')
         if reason:
-            left_out.append(told('/'.join(parts), reason))
+            left_out.append(left_out_clause('/'.join(parts), reason))
         else:
             sizes['/'.join(parts)] = path.lstat().st_size
     problem = too_much(sizes)
@@ -89,7 +89,7 @@ def too_much(sizes: Mapping[str, int]) -> str:
     return f'{what}: remove what is no part of the package'
 
 
-def told(path: str, reason: str) -> str:
+def left_out_clause(path: str, reason: str) -> str:
     """Return a clause with a path and why it is left out, without control characters."""
     shown = ''.join(c if c.isprintable() else '?' for c in path)
     return f'{shown if len(shown) <= 120 else shown[:119] + "…"} ({reason})'

@@ -49,7 +49,7 @@ def names_of(source: str) -> Names:
     here |= walrus & {*table.get_identifiers()}
     stored, loaded = _said_to_bind_and_read(nodes)
     there = here & stored | vars(builtins).keys() | _IPYTHON
-    needs_more = any(_said(node) & _LOOK_UP for node in nodes)
+    needs_more = any(_named_in(node) & _LOOK_UP for node in nodes)
     imports_all = any(isinstance(n, ast.ImportFrom) and n.names[0].name == '*' for n in nodes)
     return Names(
         bound=frozenset((here | later) & stored),
@@ -83,7 +83,7 @@ _LOOK_UP = frozenset(('eval', 'exec', 'globals', 'locals', 'vars', '__main__', '
 """Names, modules, attributes and strings with which code reads names not shown in its text."""
 
 
-def _said(node: ast.AST) -> set[str]:
+def _named_in(node: ast.AST) -> set[str]:
     """Return the name, attribute, modules or string constant that a syntax node contains."""
     match node:
         case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):

@@ -51,7 +51,7 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         yield _with_what_is_shown(cells, exercise, alone | {*others}, why='with your other cells')
     code = [i for i, cell in enumerate(cells) if is_code(cell) and not _is_apart(cell)]
     whole = tuple(i for i in code if role(cells[i]) not in ('grade', 'locked') or i in own)
-    again = _again(cells, exercise, whole)
+    again = _cells_to_rerun(cells, exercise, whole)
     yield Plan(whole, why='the whole lesson', again=again)
 
 
@@ -69,7 +69,7 @@ def plan_for_names(
     if not (binds & {*more.cells, *others}) - {*plan.cells}:
         return None
     chosen = tuple(sorted({*more.cells, *others}))
-    again = _again(cells, exercise, chosen, names=names)
+    again = _cells_to_rerun(cells, exercise, chosen, names=names)
     return Plan(chosen, why='with what binds a name that it needs', again=again)
 
 
@@ -139,10 +139,10 @@ def _with_what_is_shown(
             bound |= _bound(cells, nearest)
             todo += [(i, names_of(cells[i].source).needed) for i in nearest]
     every = tuple(sorted(chosen | demonstrations))
-    return Plan(every, why, tuple(sorted(demonstrations)), _again(cells, exercise, every))
+    return Plan(every, why, tuple(sorted(demonstrations)), _cells_to_rerun(cells, exercise, every))
 
 
-def _again(
+def _cells_to_rerun(
     cells: list[NotebookNode],
     exercise: Exercise,
     chosen: tuple[int, ...],

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from my_robot_basics.doctor.callback import Keeps
-from my_robot_basics.doctor.evidence import Finding, Seen
+from my_robot_basics.doctor.evidence import Finding, GraphEvidence
 
 _WHY: dict[Keeps, str] = {
     'executor': "its executor has one thread, which can't take the response meanwhile",
@@ -21,7 +21,7 @@ _FIX: dict[str, str] = {
 }
 
 
-def examine(evidence: Seen) -> Iterator[Finding]:
+def examine(evidence: GraphEvidence) -> Iterator[Finding]:
     """Name the callback, and how to avoid the deadlock."""
     for each in evidence.callbacks:
         ends = [end for end in evidence.all_ends() if end.node_name == each.node_name]

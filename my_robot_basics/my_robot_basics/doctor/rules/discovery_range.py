@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor.evidence import Finding, Seen
+from my_robot_basics.doctor.evidence import Finding, GraphEvidence
 
 
-def examine(evidence: Seen) -> Iterator[Finding]:
+def examine(evidence: GraphEvidence) -> Iterator[Finding]:
     """Suspect the discovery range if an end is missing and a process is not discovered."""
     missing = next((k for k in evidence.NEEDED if not evidence.ends(k)), None)
     if missing is None or evidence.missing_participants <= 0:

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 from my_robot_basics.doctor.callback import Callback
-from my_robot_basics.doctor.evidence import Finding, Seen
+from my_robot_basics.doctor.evidence import Finding, GraphEvidence
 from my_robot_basics.doctor.rules.blocks_itself import ASK, LATER
 
 
-def examine(evidence: Seen) -> Iterator[Finding]:
+def examine(evidence: GraphEvidence) -> Iterator[Finding]:
     """Name the callback, how long it was observed, and the line that it executes."""
     for each in evidence.callbacks:
         serves = each.service_name == evidence.name

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor.evidence import VERBS, Finding, Seen
+from my_robot_basics.doctor.evidence import VERBS, Finding, GraphEvidence
 
 
-def examine(evidence: Seen) -> Iterator[Finding]:
+def examine(evidence: GraphEvidence) -> Iterator[Finding]:
     """Name the domain, if other domains were searched."""
     for kind in evidence.NEEDED:
         if evidence.ends(kind):

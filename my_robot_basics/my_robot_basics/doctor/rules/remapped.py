@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.doctor.evidence import Finding, Seen
+from my_robot_basics.doctor.evidence import Finding, GraphEvidence
 
 
-def examine(evidence: Seen) -> Iterator[Finding]:
+def examine(evidence: GraphEvidence) -> Iterator[Finding]:
     """Show the command without the remapping rule that renamed the end."""
     for kind in evidence.NEEDED:
         if evidence.ends(kind):

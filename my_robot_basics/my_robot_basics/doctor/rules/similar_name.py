@@ -4,12 +4,12 @@ import difflib
 from collections.abc import Iterator
 
 from my_robot_basics.doctor import code
-from my_robot_basics.doctor.evidence import VERBS, Endpoint, Finding, Kind, Seen
+from my_robot_basics.doctor.evidence import VERBS, Endpoint, Finding, GraphEvidence, Kind
 
 CUTOFF = 0.75
 
 
-def examine(evidence: Seen) -> Iterator[Finding]:
+def examine(evidence: GraphEvidence) -> Iterator[Finding]:
     """Show the line to edit; if no node uses the given name, show a similar one to diagnose."""
     if not any(evidence.ends(kind) for kind in evidence.KINDS):
         yield from _misspelt_question(evidence)
@@ -35,7 +35,7 @@ def examine(evidence: Seen) -> Iterator[Finding]:
             )
 
 
-def _wrong_end(evidence: Seen, other: Endpoint) -> tuple[Endpoint, str]:
+def _wrong_end(evidence: GraphEvidence, other: Endpoint) -> tuple[Endpoint, str]:
     """Return the end to edit, and the name that it should have.
 
     It is an end of the diagnosed name if that is relative by mistake; else `other`.
@@ -57,7 +57,7 @@ def _why(end: Endpoint, name: str) -> str:
     return f"in {end.node_name}, a name without a leading / begins with the node's namespace"
 
 
-def _misspelt_question(evidence: Seen) -> Iterator[Finding]:
+def _misspelt_question(evidence: GraphEvidence) -> Iterator[Finding]:
     first, second = evidence.KINDS if evidence.OF == 'on' else reversed(evidence.KINDS)
     for end in _similar(evidence, first)[:1] or _similar(evidence, second)[:1]:
         how = _difference(end.name, evidence.name)
@@ -72,7 +72,7 @@ def _misspelt_question(evidence: Seen) -> Iterator[Finding]:
         )
 
 
-def _similar(evidence: Seen, kind: Kind) -> list[Endpoint]:
+def _similar(evidence: GraphEvidence, kind: Kind) -> list[Endpoint]:
     """Return ends of that kind with similar names; first those whose other end is missing."""
     met = {
         end.name
