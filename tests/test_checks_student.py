@@ -176,11 +176,14 @@ def test_any_bad_reply_is_a_failed_check(monkeypatch, reply):
         student.call('f', 2)
 
 
-@pytest.mark.parametrize('body', [5, True, None, ['a', 'b'], ('a', 5), ('a',), {}])
+@pytest.mark.parametrize(
+    'body', [5, True, None, ['a', 'b'], ('a', 5), ('a',), ('a', 'b', 5), ('a',) * 4, {}]
+)
 def test_what_a_notebook_tells_of_its_nodes_is_believed_in_its_form_alone(monkeypatch, body):
     monkeypatch.setattr(node_troubles, 'reply_value', lambda request: body)
     assert (node_troubles.last_raised('/a'), node_troubles.unfinished('/a')) == ('', '')
     assert node_troubles.unpublished_field('/a') == ('', '')
+    assert node_troubles.ended() == ('', '', '')
     assert node_troubles.times_raised('/a') == (5 if body == 5 else 0)
 
 

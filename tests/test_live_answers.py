@@ -50,6 +50,23 @@ def test_an_answer_that_makes_its_node_and_does_not_spin_it_is_told_so(lesson):
     lesson.run('reset()')
 
 
+def test_an_answer_whose_node_another_cell_has_ended_is_told_so(lesson):
+    lesson.run('from my_robot_basics.graph.not_running import why_not_running')
+    lesson.run("reset('Answer')\nclass Answer(Talker): pass\nrun_answer('Answer', 'yes')")
+    unknown = 'the node is not running, so run the cell'
+    assert unknown in lesson.value('why_not_running()')
+    lesson.run("run(Talker, 'no')")
+    replaced = 'because `run(Talker)` has started another node of the name /talker and ended'
+    assert replaced in lesson.value('why_not_running()')
+    lesson.run("run(Answer, 'again')")
+    assert unknown in lesson.value('why_not_running()')
+    lesson.run('stop(Answer)')
+    stopped = 'the node of Answer no longer runs, because a cell below has stopped it'
+    assert stopped in lesson.value('why_not_running()')
+    lesson.run('reset()')
+    assert unknown in lesson.value('why_not_running()')
+
+
 IMPORTED = 'from my_robot_basics import kinematics_publisher as course\n'
 TAKEN = {
     'derives': f'{IMPORTED}class Answer(course.KinematicsPublisher): pass',

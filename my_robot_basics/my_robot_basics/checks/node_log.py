@@ -15,7 +15,7 @@ from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
-from my_robot_basics.graph.snapshot import NOT_RUNNING
+from my_robot_basics.graph.not_running import why_not_running
 from my_robot_basics.graph.watcher import Watcher
 
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
@@ -166,7 +166,7 @@ class NodeLog:
 
     def _why_absent(self, others: Sequence[str]) -> str:
         if not others:
-            return NOT_RUNNING
+            return why_not_running()
         name = self.node_name.strip('/')
         if any(other.endswith(self.node_name) for other in others):
             return f'the name {name} is right, so leave the namespace out of super().__init__(…)'

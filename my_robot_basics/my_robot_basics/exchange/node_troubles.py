@@ -7,6 +7,8 @@ from my_robot_basics.exchange import wire
 from my_robot_basics.exchange.asking import reply_value
 from my_robot_basics.feedback.errors import shorten
 
+_NONE = '', '', ''
+
 
 def last_raised(node_name: str) -> str:
     """Return the last exception of that node's callbacks, '' if the notebook reports none."""
@@ -34,3 +36,13 @@ def unfinished(node_name: str) -> str:
     """Return the line at which a callback of that node blocks all others, or ''."""
     body = reply_value(wire.request(op='unfinished', name=node_name))
     return shorten(body) if isinstance(body, str) else ''
+
+
+def ended() -> tuple[str, str, str]:
+    """Return which node a later cell has ended, the node that took its place, and their name.
+
+    The last two are '' if the cell has stopped it; all three if the notebook reports none.
+    """
+    body = told(wire.request(op='ended', name=wire.THREADS))
+    is_told = isinstance(body, tuple) and [type(text) for text in body] == [str] * 3
+    return (shorten(body[0], 60), shorten(body[1], 60), shorten(body[2], 60)) if is_told else _NONE

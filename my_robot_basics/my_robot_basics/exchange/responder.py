@@ -80,6 +80,12 @@ def _unpublished_field(node_name: str) -> tuple[str, str]:
     return troubles.field(node_name) if troubles else ('', '')
 
 
+def _ended(_: str) -> tuple[str, str, str]:
+    """Return the class of the answer if its node was ended, what took its place, and its name."""
+    ended = sys.modules.get('my_robot_basics.live.ended')
+    return ended.told() if ended else ('', '', '')
+
+
 def _unfinished(node_name: str) -> str:
     """Return the line at which a callback blocks a node that `live` spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
@@ -124,6 +130,7 @@ _OTHERS: dict[str, Callable[..., object]] = {
     'raised': _times_raised,
     'field': _unpublished_field,
     'unfinished': _unfinished,
+    'ended': _ended,
     'clock': _set_use_sim_time,
     'package': _ask_package,
 }

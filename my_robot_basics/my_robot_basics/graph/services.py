@@ -12,7 +12,8 @@ from my_robot_basics.graph.graphs import (
     publisher_infos,
     subscription_infos,
 )
-from my_robot_basics.graph.snapshot import NOT_RUNNING, similar
+from my_robot_basics.graph.not_running import why_not_running
+from my_robot_basics.graph.snapshot import similar
 from my_robot_basics.graph.watcher import HIDDEN
 
 OF_EVERY_NODE = frozenset(
@@ -45,7 +46,7 @@ class ServiceGraph:
         ends = self.servers if is_served else self.clients
         kind = 'action' if maker.startswith('Action') else 'service'
         if not self.node_names:
-            return NOT_RUNNING
+            return why_not_running()
         find, mistaken_maker = publisher_infos, 'create_publisher'
         if is_served:
             find, mistaken_maker = subscription_infos, 'create_subscription'

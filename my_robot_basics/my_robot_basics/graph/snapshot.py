@@ -5,12 +5,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.graph.not_running import why_not_running
 from my_robot_basics.graph.raised import what_stopped
 
-NOT_RUNNING = (
-    'the node is not running, so run the cell that starts it and read its output; a node whose'
-    ' __init__ raises, waits, loops or spins never runs'
-)
 PLUMBING = ('/clock', '/parameter_events', '/rosout')
 """Topics that rclpy itself uses in every node, whatever the node's author wrote."""
 
@@ -99,7 +96,7 @@ class GraphSnapshot:
                 f' name in {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
-            return NOT_RUNNING
+            return why_not_running()
         if near:
             uses = theirs(f'{", ".join(names[near])} uses {near}')
             if near in {name.rpartition('/')[0] + topic_name for name in names[near]}:

@@ -6,7 +6,7 @@ from typing import Any
 import psutil
 from rclpy.node import Node
 
-from my_robot_basics.live import course_nodes, runner, troubles
+from my_robot_basics.live import course_nodes, ended, runner, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
@@ -23,6 +23,7 @@ def reset(*names: str) -> None:
     """
     runner.shut_down()
     troubles.forget_all()
+    ended.begin('')
     if classroom.in_grading_room():
         course_nodes.close()
     _started_before.clear()
@@ -56,6 +57,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
     if taken := course_nodes.taken_from(answer):
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
+    ended.begin(answer.__name__)
     with course_nodes.none_made():
         node = runner.run(answer, *args, **kwargs)
     _refuse_programs()

@@ -1,0 +1,27 @@
+"""Why there is no node at all: a clause that begins with what is missing."""
+
+from my_robot_basics.exchange import node_troubles
+from my_robot_basics.feedback.hidden import theirs
+
+NOT_RUNNING = (
+    'the node is not running, so run the cell that starts it and read its output; a node whose'
+    ' __init__ raises, waits, loops or spins never runs'
+)
+
+
+def why_not_running() -> str:
+    """What to do if no node runs: NOT_RUNNING, unless a cell of the notebook has ended it."""
+    ended, by, name = node_troubles.ended()
+    if by:
+        return (
+            f'the node of {theirs(ended)} no longer runs, because `run({theirs(by)})` has started'
+            f' another node of the name {theirs(name)} and ended the first one, so derive'
+            " your class from Node itself, and give it, in super().__init__('…'), a name that no"
+            ' other node has'
+        )
+    if ended:
+        return (
+            f'the node of {theirs(ended)} no longer runs, because a cell below has stopped it with'
+            ' stop(…), so delete that line'
+        )
+    return NOT_RUNNING
