@@ -12,7 +12,7 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from my_robot_basics.session import overlays
+from my_robot_basics.session import overlays, sourced, sourced_workspaces
 from ros2_command import SCRIPT, own_domain, ros2, started
 
 ROOT = Path(__file__).parents[1]
@@ -272,12 +272,98 @@ def test_a_folder_that_is_gone(built):
     )
 
 
+def test_a_folder_that_only_another_user_can_read(tmp_path, monkeypatch):
+    def refuse(path):
+        raise PermissionError(13, 'Permission denied', str(path))
+
+    monkeypatch.setattr(os, 'listdir', refuse)
+    monkeypatch.setattr(os, 'access', lambda path, mode: False)
+    (said,) = sourced_workspaces.faults({'AMENT_PREFIX_PATH': str(tmp_path)})
+    assert said.startswith(f'{tmp_path} cannot be read ([Errno 13] Permission denied: ')
+    assert 'get the right to read it (`ls -ld` shows whose it is), or open a new' in said
+
+
 @pytest.mark.starts
 def test_a_robots_own_packages_are_not_looked_at(built):
     (built.workspace / 'install/.colcon_install_layout').unlink()  # as in /opt/ros
     (built.prefix / DEFINITION).unlink()
     assert ros2('topic', 'list', '--help', **built.variables()).err == ''
-    assert list(overlays.faults(built.variables())) == []
+    assert list(sourced_workspaces.faults(built.variables())) == []
+
+
+UNREADABLE = Path('/proc/self/mem')
+"""A file that nobody can read from its beginning, root neither."""
+
+
+@pytest.mark.starts
+def test_a_library_that_cannot_be_read(built):
+    library = built.prefix / f'lib/lib{NAME}__rosidl_typesupport_c.so'
+    library.unlink()
+    library.symlink_to(UNREADABLE)
+    assert the_sentence(built).startswith('cannot be read ([Errno 5] Input/output error), so')
+
+
+@pytest.mark.starts
+def test_a_list_of_definitions_that_is_no_text(built):
+    (built.prefix / overlays.INDEX / NAME).write_bytes(b'srv/\xff.srv')
+    assert the_sentence(built).startswith(
+        "cannot be read ('utf-8' codec can't decode byte 0xff in position 4"
+    )
+
+
+def test_a_package_whose_folder_cannot_be_read(built, monkeypatch):
+    def refuse(path):
+        raise PermissionError(13, 'Permission denied', path)
+
+    monkeypatch.setattr(sourced.os, 'listdir', refuse)
+    with pytest.raises(ImportError, match=r'cannot be read \(\[Errno 13\] Permission denied: '):
+        sourced._look_at(str(built.modules.parent), NAME)
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('text', ['{', '[]', '{}', '{"type_hashes": [3]}', '{"type_hashes": 3}'])
+def test_a_description_that_is_broken(built, text):
+    file = f'share/{NAME}/srv/SolveIK.json'
+    (built.prefix / file).write_text(text)
+    assert runs_but_says(built) == f'has a broken {file}{built.again()}'
+
+
+@pytest.mark.starts
+def test_a_source_that_cannot_be_read(built):
+    source = built.workspace / f'src/{NAME}/srv/SolveIK.srv'
+    source.unlink()
+    source.symlink_to(UNREADABLE)
+    assert runs_but_says(built) == (
+        f'cannot be compared with its sources ([Errno 5] Input/output error){built.again()}'
+    )
+
+
+@pytest.mark.starts
+def test_a_definition_that_cannot_be_read(built):
+    (built.prefix / DEFINITION).unlink()
+    (built.prefix / DEFINITION).mkdir()
+    imported = built.python(f'import {NAME}.srv')
+    assert imported.returncode == 0
+    assert 'cannot be compared with its sources ([Errno 21] Is a directory' in imported.stderr
+
+
+@pytest.mark.starts
+def test_an_old_copy_of_the_course_is_found_first(built, tmp_path):
+    old = tmp_path / f'old/install/my_robot_basics/lib/{PYTHON}/site-packages/my_robot_basics'
+    old.mkdir(parents=True)
+    (old / '__init__.py').touch()
+    folders = f'{old.parent}:{built.variables()["PYTHONPATH"]}'
+    terminal = {'PYTHONPATH': folders, 'COURSE_LANGUAGE': 'zh_CN'}  # which only a newer copy has
+    source = built.workspace / f'src/{NAME}/srv/SolveIK.srv'
+    source.write_text('float64 x\n---\n')
+    changed = built.python(
+        f'import {NAME}.srv, my_robot_basics as m; print(m.__file__)', **terminal
+    )
+    assert changed.stdout.strip() == str(old / '__init__.py')
+    assert 'was built before srv/SolveIK.srv in src was changed' in changed.stderr
+    (built.prefix / DEFINITION).unlink()
+    broken = built.python(f'import {NAME}.srv', **terminal)
+    assert f'ImportError: {NAME} in {built.prefix} is only half built' in broken.stderr
 
 
 ASKER = f"""

@@ -5,7 +5,7 @@ import sys
 
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.ros2.errors import CommandError
-from my_robot_basics.session import lessons, overlays
+from my_robot_basics.session import lessons, overlays, sourced_workspaces
 from my_robot_basics.session.classroom import FAST_DISCOVERY, HIGHEST_DOMAIN
 
 _joined: lessons.RunningLesson | None = None
@@ -27,7 +27,7 @@ def enter() -> None:
         os.environ['ROS_DOMAIN_ID'] = _domain_to_join()
     _put_last('AMENT_PREFIX_PATH', sys.prefix)  # a workspace that was sourced comes first
     if '_ARGCOMPLETE' not in os.environ:
-        for sentence in overlays.faults(os.environ):
+        for sentence in sourced_workspaces.faults(os.environ):
             overlays.say(sentence)
 
 

@@ -1,18 +1,18 @@
 """Interface packages that were built in a workspace: whether they can be used, and why not.
 
-sourced.py also loads this module by its path, while Python looks for a package of interfaces:
-besides the standard library, it imports only `language`.
+sourced.py also loads this module by its path, while Python looks for a package of interfaces, and
+an older copy of the course's package may be first in PYTHONPATH: so this module imports only the
+standard library. Whatever is broken in a workspace becomes a sentence: an error in here would be
+the traceback of the student's `import`.
 """
 
 import json
 import os
 import shlex
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-
-from my_robot_basics.language.speaking import in_language_here
 
 INDEX = 'share/ament_index/resource_index/rosidl_interfaces'
 """The part of the ament index with a file for each package of interfaces, which lists its .msg,
@@ -39,7 +39,7 @@ class Overlay:
     @property
     def is_merged(self) -> bool:
         """Whether all packages of the workspace share the folder."""
-        return (self.prefix / LAYOUT).is_file()
+        return os.path.isfile(self.prefix / LAYOUT)
 
     @property
     def workspace(self) -> Path:
@@ -54,6 +54,16 @@ class Overlay:
 
     def fault(self) -> str:
         """Say why the package cannot be loaded, and what to do; '' if it is complete."""
+        try:
+            return self._fault()
+        except (OSError, UnicodeDecodeError) as error:
+            return self.unreadable(error)
+
+    def unreadable(self, error: Exception) -> str:
+        """Say that a file or folder of the package cannot be read, and what to do."""
+        return self._so(f'cannot be read ({error}), so it is damaged or belongs to another user')
+
+    def _fault(self) -> str:
         if not (self.prefix / self.python_folder).is_dir():
             for other in sorted(self.prefix.glob(f'lib/python3.*/site-packages/{self.package}')):
                 built = other.parts[-3].removeprefix('python')
@@ -71,6 +81,12 @@ class Overlay:
 
         Its nodes run, but they cannot communicate with nodes that use the other definition.
         """
+        try:
+            return self._difference()
+        except (OSError, UnicodeDecodeError) as error:
+            return self._so(f'cannot be compared with its sources ({error})')
+
+    def _difference(self) -> str:
         shared = self.prefix / 'share' / self.package
         for file in self._definitions():
             source = self.workspace / 'src' / self.package / file
@@ -79,6 +95,8 @@ class Overlay:
         for file in self._definitions():
             name = Path('share', self.package, file).with_suffix('.json')
             ours, theirs = (_type_hashes(Path(root, name)) for root in (sys.prefix, self.prefix))
+            if theirs is None:
+                return self._so(f'has a broken {name}')
             if ours and ours != theirs:
                 return (
                     f'{self.package} in {self.prefix} has another {file} than the course, so '
@@ -114,23 +132,18 @@ class Overlay:
         return f'{self.package} in {self.prefix} {fault}: build it again, with `{command}`'
 
 
-def sourced(variables: Mapping[str, str]) -> Iterator[Overlay]:
-    """Yield the packages of interfaces in the workspaces that a terminal has sourced."""
-    for prefix in _prefixes(variables):
-        if any((folder / LAYOUT).is_file() for folder in (prefix, prefix.parent)):
-            yield from (Overlay(prefix, file.name) for file in sorted(prefix.glob(f'{INDEX}/*')))
-
-
-def faults(variables: Mapping[str, str]) -> Iterator[str]:
-    """Yield a sentence for each fault of the workspaces that a terminal has sourced."""
-    yield from (gone(prefix) for prefix in _prefixes(variables) if not prefix.exists())
-    for overlay in sourced(variables):
-        if sentence := overlay.fault() or overlay.difference():
-            yield sentence
-
-
 def gone(prefix: Path) -> str:
-    """Return the sentence about a sourced folder that no longer exists."""
+    """Return the sentence about a sourced folder that no longer exists or cannot be read."""
+    try:
+        os.listdir(prefix)
+    except PermissionError as error:
+        return (
+            f'{prefix} cannot be read ({error}), and this terminal looks for its package there: '
+            'get the right to read it (`ls -ld` shows whose it is), or open a new terminal, which '
+            "uses the course's package if there is one"
+        )
+    except OSError:
+        pass  # it is gone, as is said below
     return (
         f'{prefix} is gone, and this terminal still looks for its package there: build the '
         "package again, or open a new terminal, which uses the course's package if there is one"
@@ -138,10 +151,21 @@ def gone(prefix: Path) -> str:
 
 
 def say(sentence: str) -> None:
-    """Print a sentence to stderr, once in a process."""
+    """Print a sentence to stderr, once in a process, in the terminal's language.
+
+    It stays English if PYTHONPATH has an older copy of this package, without `language`.
+    """
     if sentence not in _said:
         _said.add(sentence)
-        print(f'course: {in_language_here(sentence)}', file=sys.stderr)
+        print(f'course: {_translated(sentence)}', file=sys.stderr)
+
+
+def _translated(sentence: str) -> str:
+    try:
+        from my_robot_basics.language.speaking import in_language_here
+    except ImportError:
+        return sentence
+    return in_language_here(sentence)
 
 
 def was_said(sentence: str) -> bool:
@@ -152,23 +176,20 @@ def was_said(sentence: str) -> bool:
 _said: set[str] = set()
 
 
-def _prefixes(variables: Mapping[str, str]) -> Iterator[Path]:
-    for folder in variables.get('AMENT_PREFIX_PATH', '').split(os.pathsep):
-        if folder and folder != sys.prefix:
-            yield Path(folder)
-
-
 def _is_library(file: Path) -> bool:
     with file.open('rb') as content:
         return content.read(len(ELF)) == ELF
 
 
-def _type_hashes(file: Path) -> dict[str, str]:
-    """Return the hash of each type in a .json file of rosidl; {} if there is no file."""
+def _type_hashes(file: Path) -> dict[str, str] | None:
+    """Return the hash of each type in a .json file of rosidl; {} without file, None if broken."""
     if not file.is_file():
         return {}
-    listed = json.loads(file.read_text(encoding='utf-8'))['type_hashes']
-    return {each['type_name']: each['hash_string'] for each in listed}
+    try:
+        listed = json.loads(file.read_text(encoding='utf-8'))['type_hashes']
+        return {each['type_name']: each['hash_string'] for each in listed}
+    except (ValueError, KeyError, TypeError):
+        return None
 
 
 def _quoted(workspace: Path) -> str:

@@ -9,6 +9,7 @@ import sys
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import module_from_spec, spec_from_file_location
 from types import ModuleType
+from typing import Any
 
 STARTED = '_ROS_WHEELS_BOOTSTRAP_COMPLETE'
 """The environment variable that ROS's wheels set when they restart Python with their libraries."""
@@ -76,15 +77,25 @@ class Guard:
 
 def _look_at(folder: str, name: str) -> None:
     """Raise ImportError if the package cannot be loaded; print how it differs, if it does."""
-    with os.scandir(f'{folder}/{name}') as entries:
-        if not any(entry.name.startswith((f'{name}_s__', f'_{name}_s.')) for entry in entries):
-            return  # not a package of interfaces
-    checks = _checks()
-    overlay = checks.Overlay(checks.Path(folder).parents[2], name)
+    try:
+        files = os.listdir(f'{folder}/{name}')
+    except OSError as error:
+        if not _is_built(os.path.dirname(os.path.dirname(folder))):
+            return  # not a workspace's: Python says what it thinks of it
+        raise ImportError(_overlay(folder, name).unreadable(error), name=name) from error
+    if not any(file.startswith((f'{name}_s__', f'_{name}_s.')) for file in files):
+        return  # not a package of interfaces
+    overlay = _overlay(folder, name)
     if fault := overlay.fault():
         raise ImportError(fault, name=name)
     if difference := overlay.difference():
-        checks.say(difference)
+        _checks().say(difference)
+
+
+def _overlay(folder: str, name: str) -> Any:
+    """Return the package in a folder of modules, PREFIX/lib/pythonX.Y/site-packages."""
+    checks = _checks()
+    return checks.Overlay(checks.Path(folder).parents[2], name)
 
 
 def _instead(folder: str, name: str) -> ModuleSpec | None:
