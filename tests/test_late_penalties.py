@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 
 import pytest
-from course_maker import TOY, answered, executed, submit
+from course_maker import TOY, add_lesson, answered, executed, submit
 from nbgrader.api import Grade, Gradebook, SubmittedAssignment, SubmittedNotebook
 from sqlalchemy import event
 from sqlalchemy.engine import Engine
@@ -272,6 +272,18 @@ def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(co
     assert [*exported(course, '--student', "['bob']")] == ['bob']
     (course.gradebook / FILE).write_text('[late]\nper_day = 2\n')
     assert 'per_day = 2 is out of range: expected 0 to 1. Correct it: docs/' in exported(course)
+
+
+@pytest.mark.starts
+def test_nbgraders_own_table_has_no_lesson_that_was_withdrawn_before_anybody_had_it(course):
+    grade(course, 'bob', None)
+    add_lesson(course, '01_more')
+    try:
+        assert exported(course)['bob']['assignment'] == '01_more'  # the last of two rows
+    finally:
+        shutil.rmtree(course.root / 'solutions' / '01_more')
+    assert exported(course)['bob']['assignment'] == TOY
+    assert exported(course, '--assignment', "['01_more']")['bob']['assignment'] == '01_more'
 
 
 @pytest.mark.starts

@@ -13,6 +13,7 @@ from grader.common.points import added_up
 from grader.common.text import BYTE_ORDER_MARK, spreadsheet_table
 from grader.course import Course
 from grader.storage.lateness import recount_late_penalties
+from grader.storage.registering import withdrawn_unseen
 
 COLUMNS = (
     'assignment',
@@ -33,22 +34,27 @@ class CsvExport(ExportPlugin):
     """nbgrader's table, used instead of its CsvExportPlugin.
 
     That plugin writes late penalties as of the last grading, and no quotes: a comma in a name
-    moves all that follows into the next column.
+    moves all that follows into the next column. It also lists a lesson that was withdrawn before
+    anybody handed it in, with a zero for each student.
     """
 
     def export(self, gradebook: Gradebook) -> None:
         """Write the table into the file of `--to`, or grades.csv."""
         try:
-            self._recount()
+            course = self._course()
+            if course is not None:
+                recount_late_penalties(course)
         except CourseError as problem:
             raise SystemExit(f'course: {problem}') from None
         path = Path(self.to or 'grades.csv')
         assignments = {str(each) for each in self.assignment}
         students = {str(each) for each in self.student}
+        left_out = withdrawn_unseen(course, gradebook) - assignments if course else set()
         rows = [
             _row(gradebook, assignment, student)
             for assignment in sorted(gradebook.assignments, key=_when_due)
             if not assignments or assignment.name in assignments
+            if assignment.name not in left_out
             for student in sorted(gradebook.students, key=_named)
             if not students or student.id in students
         ]
@@ -66,13 +72,13 @@ class CsvExport(ExportPlugin):
             ) from None
         self.log.info('%s: %d rows', path, len(rows))
 
-    def _recount(self) -> None:
+    def _course(self) -> Course | None:
+        """Return the course whose gradebook this is; None for a backup, exported as it is."""
         directories = self.parent.coursedir
         root = Path(directories.root)
         course = Course(root, gradebook_of(directories.db_url, root))
-        # another database, for example a backup, is exported as it is
-        if directories.db_url.split('?')[0] == course.db_url.split('?')[0]:
-            recount_late_penalties(course)
+        is_its = directories.db_url.split('?')[0] == course.db_url.split('?')[0]
+        return course if is_its else None
 
 
 def _when_due(assignment: Assignment) -> tuple[bool, datetime, str]:

@@ -27,7 +27,7 @@ from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import connected
 from grader.storage.gradebook import opened, waits_for_a_person
 from grader.storage.lesson_checksums import checksums
-from grader.storage.registering import withdrawn
+from grader.storage.registering import withdrawn_unseen
 
 MOST_ASKED = 500
 """Students in one query: databases limit the number of values in a query."""
@@ -77,7 +77,7 @@ def _cells_of(
     """Return the graded cells of each requested assignment, in the lesson's order."""
     names = {name for [name] in book.db.execute(select(Assignment.name))}
     if only is None:
-        names -= {name for name, number in withdrawn(course, book).items() if not number}
+        names -= withdrawn_unseen(course, book)
     else:
         names &= {assignment for _, assignment in only}
     asked = (

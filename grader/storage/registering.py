@@ -80,6 +80,11 @@ def withdrawn(course: Course, book: Gradebook) -> dict[str, int]:
     return {name: number for name, number in book.db.execute(asked) if name not in known}
 
 
+def withdrawn_unseen(course: Course, book: Gradebook) -> set[str]:
+    """Return those of `withdrawn` that nobody has handed in: no table lists them."""
+    return {name for name, number in withdrawn(course, book).items() if not number}
+
+
 def _checksums_in(book: Gradebook, assignment: str) -> dict[str, str] | None:
     try:
         cells = book.find_notebook(assignment, assignment).source_cells
