@@ -162,7 +162,8 @@ class RateParameter:
             cause = f'the rate does not follow {self.name}'
             hint = (
                 'a timer keeps its period: when the parameter changes, destroy the timer and '
-                'create another one, or set timer.timer_period_ns'
+                'create another one, or set timer.timer_period_ns, in a callback without `async`: '
+                'rclpy does not await it'
             )
         fail(
             expected=f'{now_hz:g} Hz after {self.name} went from {before_hz:g} to {now_hz:g}',
