@@ -43,6 +43,6 @@ def ended() -> tuple[str, str, str]:
 
     The last two are '' if the cell has stopped it; all three if the notebook reports none.
     """
-    body = told(wire.request(op='ended', name=wire.THREADS))
+    body = reply_value(wire.request(op='ended', name=wire.THREADS))
     is_told = isinstance(body, tuple) and [type(text) for text in body] == [str] * 3
     return (shorten(body[0], 60), shorten(body[1], 60), shorten(body[2], 60)) if is_told else _NONE
