@@ -170,6 +170,7 @@ def test_without_a_file_nbgraders_own_due_date_stays_and_costs_nothing(course):
         ('[late]\nper_day = 10', 'per_day = 10 is out of range: expected 0 to 1'),
         ('[late]\nat_most = -1', 'at_most = -1 is out of range: expected 0 to 1'),
         ('[late]\nper_day = nan', 'per_day = nan is out of range: expected 0 to 1'),
+        ('[late]\ngrace_minutes = -1', 'grace_minutes = -1 is out of range: expected 0 or more'),
     ],
 )
 def test_what_is_wrong_in_the_file_is_said_before_anything_is_graded(rules, wrong, course):

@@ -104,7 +104,8 @@ def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise _Wrong(f'{key} must be a number')
         if not 0 <= value <= _POLICY[key]:
-            raise _Wrong(f'{key} = {value} is out of range: expected 0 to {_POLICY[key]:g}')
+            most = f'0 to {_POLICY[key]:g}' if _POLICY[key] < math.inf else '0 or more'
+            raise _Wrong(f'{key} = {value} is out of range: expected {most}')
     return Deadlines(
         due={assignment: _time(assignment, value) for assignment, value in due.items()},
         extended={
