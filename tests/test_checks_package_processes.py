@@ -4,7 +4,7 @@ import signal
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import package_processes
+from my_robot_basics.checks import package_processes, spinning
 from my_robot_basics.checks.package_processes import GONE_SEC, RunningExecutable
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 
@@ -42,9 +42,21 @@ def test_a_program_that_crashed_is_told_what_it_may_have_done(monkeypatch, code,
     assert f'saw it has ended: {words}' in str(raised.value)
 
 
-@pytest.mark.parametrize(('code', 'hint'), [(-signal.SIGSEGV, 'rclpy crashes'), (1, 'catch')])
-def test_a_crash_is_no_unclean_end(monkeypatch, code, hint):
+@pytest.mark.parametrize(
+    ('end', 'code', 'hint'),
+    [
+        ('expect_end', -signal.SIGSEGV, 'rclpy crashes like this if an ActionClient'),
+        ('expect_end', 1, 'let main return without an exception'),
+        ('expect_clean_end', -signal.SIGSEGV, 'rclpy can crash like this if main returns'),
+        ('expect_clean_end', 2, 'in main, catch KeyboardInterrupt'),
+    ],
+)
+def test_a_crash_is_told_by_its_likely_cause(monkeypatch, end, code, hint):
     program = RunningExecutable('greeter', 'greet', ())
     monkeypatch.setattr(program, '_state', lambda: (code, ''))
+    for name in ('expect_running', '_ask', '_wait_for_end'):
+        monkeypatch.setattr(program, name, lambda *_, **__: None)
+    monkeypatch.setattr(program, '_watcher', None, raising=False)
+    monkeypatch.setattr(spinning, 'wait_until_they_spin', lambda *_: None)
     with pytest.raises(CheckFailed, match=f': {hint}'):
-        program._expect_code(0, hint='catch KeyboardInterrupt')
+        getattr(program, end)()

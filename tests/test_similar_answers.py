@@ -157,7 +157,7 @@ def test_what_could_not_be_compared_is_said_and_stops_no_report(course, monkeypa
     similar = find_similar(course, [TOY])
     assert similar.pairs == ()
     assert similar.problems == (
-        f'{TOY}, double: answers were not compared, for it took more than 60 s',
+        f'{TOY}, double: answers were not compared, because it took more than 60 s',
     )
 
 
