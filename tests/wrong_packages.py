@@ -202,7 +202,10 @@ WRONG = (
         'swaps_x_and_y',
         swap(PLAYER, ('Point(x=x, y=y)', 'Point(x=y, y=x)')),
         (1, 0, 0),
-        {'package_runs': 'put x and y into', 'arm_player_plays': 'put x and y into'},
+        {
+            'package_runs': 'copy both to the request',
+            'arm_player_plays': 'copy both to the request',
+        },
     ),
     Change(
         'other_parameter',
