@@ -379,7 +379,7 @@ WRONG += (
         'sees_for_itself_what_is_reachable',
         swap(PLAYER, ('if not answer.reachable', 'if not 0.2 <= (x * x + y * y) ** 0.5 <= 1.8')),
         (1, 2, 0),
-        {'arm_player_plays': 'where response.reachable is False'},
+        {'arm_player_plays': 'if response.reachable is False'},
     ),
     Change(
         'tries_a_canceled_goal_again',
