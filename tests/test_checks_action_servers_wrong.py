@@ -57,6 +57,14 @@ class Capitals(MoveArmClient):
         super().tell(word.upper())
 
 
+class AllWordsAtOnce(MoveArmClient):
+    """Publishes each word for each goal that ended: one of them is right."""
+
+    def ended(self, future):
+        for word in ('succeeded', 'canceled', 'aborted'):
+            self.tell(word)
+
+
 class NoResult(MoveArmClient):
     def answered(self, future):
         if not future.result().accepted:
@@ -153,6 +161,7 @@ WRONG_OUTCOMES = [
     (TellsAtOnce, "no outcome while the goal has not ended, saw 'succeeded': publish the outcome"),
     (Numbers, "expected 'succeeded' on .*saw '4': publish the word for the status, not its num"),
     (Capitals, "expected 'succeeded' on .*saw 'SUCCEEDED': write the word in lower case"),
+    (AllWordsAtOnce, "one outcome of a goal, 'succeeded', on .*publish one word for each goal"),
     (
         NoResult,
         "expected 'succeeded' on .*saw none.*: publish the outcome when the result is ther",

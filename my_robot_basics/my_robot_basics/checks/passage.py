@@ -7,7 +7,7 @@ from typing import Any
 from my_robot_basics.checks.enough import fewest_in_a_row
 from my_robot_basics.checks.invented import has_invented
 from my_robot_basics.checks.pairs import GAP_SEC, Pairs
-from my_robot_basics.checks.pushed_out import FLOOD, PushedOut
+from my_robot_basics.checks.pushed_out import FLOOD, MOST_AGAIN, PushedOut
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
@@ -28,7 +28,6 @@ FEWEST_LOST = 2
 """This many messages that never came out are no coincidence if later ones did."""
 MOST_LATE = 4
 """This many late messages decide; a BEST_EFFORT endpoint may lose fewer without a fault."""
-MOST_AGAIN = 3  # how often a message is sent again that others' may have pushed out
 RECENT = 20
 """A message counts as a copy if it equals one of the last RECENT that came out."""
 PAUSE_SEC, PAUSES = 1.1, 3
@@ -91,9 +90,8 @@ class Passage:
         is_enough = in_a_row >= fewest_in_a_row(row) or len(self._waiting) < FEWEST_LOST
         if late < MOST_LATE and is_enough:
             return RelayFaults(copies=copies)
-        return RelayFaults(
-            late=late, lost=tuple(sent.kind for sent in self._waiting), copies=copies
-        )
+        lost = tuple(sent.kind for sent in self._waiting)
+        return RelayFaults(late=late, lost=lost, copies=copies)
 
     def copies(self) -> int:
         """How often the least repeated message came out so far; 1 if none was repeated."""
@@ -162,7 +160,9 @@ class Passage:
                 break
         return False
 
-    def _wait_for(self, sent: Sent, *, free_sec: float, unless: Callable[[], bool] = bool) -> bool:
+    def _wait_for(
+        self, sent: Sent, *, free_sec: float, unless: Callable[[], bool] = lambda: False
+    ) -> bool:
         """Wait up to `free_sec` of free time for a message; return whether it came out."""
 
         def is_out() -> bool:

@@ -10,6 +10,8 @@ loss is not the node's fault."""
 FEW = 3
 """On a busy machine, one message can push another out of a queue of depth 1. If this many that
 were published later have come out, the other will not come any more."""
+MOST_AGAIN = 3
+"""How often a message is sent again that others may have pushed out."""
 MOST = 20
 """At most this many losses are excused; more are no coincidence."""
 

@@ -83,7 +83,7 @@ def _unpublished_field(node_name: str) -> tuple[str, str]:
 def _ended(_: str) -> tuple[str, str, str]:
     """Return the class of the answer if its node was ended, what took its place, and its name."""
     ended = sys.modules.get('my_robot_basics.live.ended')
-    return ended.told() if ended else ('', '', '')
+    return ended.how_answer_ended() if ended else ('', '', '')
 
 
 def _unfinished(node_name: str) -> str:

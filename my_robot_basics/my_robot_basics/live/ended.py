@@ -39,6 +39,6 @@ def noted(keys: Iterable[str], how: tuple[str, str] = _STOPPED) -> list[str]:
     return ending
 
 
-def told() -> tuple[str, str, str]:
+def how_answer_ended() -> tuple[str, str, str]:
     """Return the key of the answer's node if it was ended, else '', and how it was ended."""
     return ('', *_STOPPED) if _answer.ended is None else (_answer.key, *_answer.ended)
