@@ -97,6 +97,14 @@ def test_both_branches_of_a_point_mirror_each_other_in_its_bearing(texts, are_br
     assert answers.hold_both_branches([45.0, 225.0], texts) is are_branches
 
 
-def test_a_flood_of_numbers_is_not_compared_pair_by_pair():
-    texts = [f'{number}.5 1.5' for number in range(50_000)]
+def test_a_flood_of_numbers_is_not_compared_pair_by_pair(monkeypatch):
+    compared = []
+
+    def combinations(pairs, _):
+        compared.append(len(pairs))
+        return ()
+
+    monkeypatch.setattr(answers.itertools, 'combinations', combinations)
+    texts = [f'{number}.5 1.5' for number in range(5_000)]
     assert not answers.hold_both_branches([0.0], texts)
+    assert compared == [answers.MOST_PAIRS]

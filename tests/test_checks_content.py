@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from geometry_msgs.msg import Point32, PoseWithCovariance
+from geometry_msgs.msg import Point, Point32, PoseWithCovariance
 from my_robot_basics.checks.content import content
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import ChannelFloat32, JointState, PointCloud
@@ -52,6 +52,11 @@ def test_equal_messages_have_one_content_though_their_bytes_differ():
 def test_another_number_sign_name_or_field_is_another_content(other):
     assert content(other) != content(JointState(name=['joint1'], position=[0.0]))
     assert content(other) == content(other)
+
+
+def test_a_number_by_itself_is_compared_like_those_of_a_sequence():
+    assert content(Point(x=-0.0)) != content(Point(x=0.0))
+    assert content(Point(x=float('nan'))) == content(Point(x=float('nan')))
 
 
 def test_a_message_that_is_sent_has_the_content_that_is_received():

@@ -8,6 +8,8 @@ from my_robot_basics.checks import pairs
 from my_robot_basics.checks import passage as passage_module
 from my_robot_basics.checks.enough import fewest_in_a_row
 from my_robot_basics.checks.passage import Passage
+from my_robot_basics.checks.pushed_out import FEW, PushedOut
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
 
@@ -206,3 +208,29 @@ def test_two_of_a_kind_name_no_cause(lost, is_named):
     """A node that drops every eleventh lost two negative ones by chance, on a busy machine."""
     fault, _ = RelayFaults(late=lost, lost=('with zeros',) * lost).fault()
     assert fault.endswith('those with zeros') == is_named
+
+
+@pytest.mark.parametrize(
+    ('overtaking', 'others_publish', 'is_busy', 'may_be'),
+    [
+        (FEW, True, True, True),
+        (FEW - 1, True, True, False),
+        (FEW, False, True, False),
+        (FEW, True, False, False),
+    ],
+    ids=['overtaken', 'by fewer', 'by nobody else', 'on an idle machine'],
+)
+def test_a_message_may_be_pushed_out_by_several_of_others_on_a_busy_machine(
+    overtaking, others_publish, is_busy, may_be
+):
+    watch = SimpleNamespace(is_busy=lambda: is_busy)
+    assert PushedOut(others_publish).may_be_by_few(overtaking, watch) is may_be
+
+
+@pytest.mark.parametrize(
+    ('on_source', 'others_publish'), [({'/relay'}, False), ({'/relay', '/arm'}, True)]
+)
+def test_others_are_nodes_that_publish_on_the_source_alone(on_source, others_publish):
+    source = SimpleNamespace(publishers=lambda: on_source)
+    out = SimpleNamespace(publishers=lambda: {'/relay'})
+    assert Recorder.has_other_publishers(source, out) is others_publish

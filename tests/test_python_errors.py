@@ -119,6 +119,14 @@ def error_of(code, **names):
         ('SolveIK.Request(1.0, 2.0)', ', so write each field with its name, such as SolveIK.Req'),
         ('FloatingPointRange(1.0, 50.0)', ', so write each field with its name, such as Sol'),
         ('JointState(["joint1"])', ', so write each field with its name, such as SolveIK.Reques'),
+        (
+            'from std_msgs.msg import JointState',
+            ', so import it from the package that has it, such as sensor_msgs.msg for JointState',
+        ),
+        (
+            'Node.__new__(Node).set_parameters_callback',
+            ', so write add_on_set_parameters_callback, its name since',
+        ),
         ('SolveIK.Request().x', ', so look its fields up with ros2 interface show'),
         ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
         ('FloatingPointRange()[0]', ', so put the range into a list, and that into a descriptor:'),
