@@ -95,7 +95,7 @@ WRONG = {
     'ElbowDown': 'this is elbow_down',
     'SolvesItself': 'not a solution of your own',
     'OtherSpeed': 'the speed that the task names',
-    'SwapsXAndY': 'put x and y into request.target',
+    'SwapsXAndY': 'copy both to the request',
     'FixedTargets': 'the parameter targets is x1, y1, x2, y2',
     'AlwaysSucceeded': 'the status of the result tells',
     'SaysCancelled': 'write the words as the task does',
