@@ -32,9 +32,10 @@ def test_what_answers_no_more_may_be_a_name_alone(monkeypatch, answers, free_sec
         (-signal.SIGSEGV, 'ended by SIGSEGV: rclpy crashes like this if an ActionClient or Act'),
         (-signal.SIGKILL, "ended by SIGKILL: run it with run_executable('greeter', 'greet')"),
         (1, "exit code 1: run it with run_executable('greeter', 'greet')"),
+        (0, 'exit code 0: main has returned: let it spin the node until Ctrl-C'),
     ],
 )
-def test_a_program_that_crashed_is_told_what_it_may_have_done(monkeypatch, code, words):
+def test_a_program_that_ended_gets_advice_for_its_exit_code(monkeypatch, code, words):
     program = RunningExecutable('greeter', 'greet', ())
     monkeypatch.setattr(program, '_state', lambda: (code, ''))
     with pytest.raises(CheckFailed) as raised:

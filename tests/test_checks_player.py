@@ -112,6 +112,26 @@ def test_what_is_wrong_is_named(play, variant):
         play(variant, targets)
 
 
+def test_a_node_has_to_go_on_for_some_time_after_its_report(play):
+    with pytest.raises(CheckFailed, match='it ended'):
+        play('SleepsAfterTheReport', VISIBLE, stays_sec=player_report.STAYS_SEC)
+
+
+@pytest.mark.parametrize(
+    ('seen', 'advice'),
+    [
+        (['succeededunreachable'], 'write these words alone, with a space between'),
+        (['1:succeeded', '2:unreachable'], 'write these words alone, with a space between'),
+        (['succeeded', 'done'], 'write these words alone, with a space between'),
+        (['Succeeded', 'Unreachable'], 'write the words as the task does'),
+        (['succeeded'], 'report on every target, in one message'),
+        (['unreachable', 'succeeded'], 'one word for each target, in their order'),
+    ],
+)
+def test_advice_about_a_wrong_report_fits_its_words(seen, advice):
+    assert player_report._why_wrong(seen, ['succeeded', 'unreachable']).startswith(advice)
+
+
 def test_who_does_not_wait_for_the_solver_is_told(play):
     with pytest.raises(CheckFailed, match='wait until there is a server'):
         play('NeverWaitsForTheSolver', VISIBLE, arm_first=True)

@@ -5,6 +5,7 @@ The first of them is the exercise's answer.
 
 import sys
 import threading
+import time
 from pathlib import Path
 
 import rclpy
@@ -346,6 +347,13 @@ class EndsAfterTheReport(Program):
         player = cls()
         player.play()
         rclpy.spin_once(player, timeout_sec=0.5)
+
+
+class SleepsAfterTheReport(Program):
+    @classmethod
+    def main(cls):
+        cls().play()
+        time.sleep(1.5)
 
 
 class AnotherTopic(Program):
