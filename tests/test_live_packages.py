@@ -107,12 +107,14 @@ def test_a_folder_that_is_not_there_is_asked_for(capsys):
 @pytest.mark.starts
 def test_a_package_is_built_run_and_ended(folder, capsys):
     """One build, and all that comes of a right package."""
-    make_package(folder, build__x='not mine')
+    make_package(folder, build__x='not mine', **{'greeter/more.py': 'import sensor_msgs.msg'})
     before = tree(folder / PACKAGE)
     live.build_package(PACKAGE)
     assert printed(capsys) == (
         'built greeter in $ROS_WS/install/greeter: `ros2 run greeter` finds greet not handed in, '
-        'and not built: build (made by a build, which is done again at grading)'
+        'and not built: build (made by a build, which is done again at grading) '
+        'package.xml does not name sensor_msgs, which greeter/more.py imports: on a robot, colcon '
+        'and rosdep would not know that it is needed; add <depend>sensor_msgs</depend>'
     )
     assert tree(folder / PACKAGE) == before
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
+from my_robot_basics.live.package_needs import unnamed_needs
 from my_robot_basics.session import classroom, package_files, subreaper
 
 MOST_WORDS = 20_000
@@ -42,6 +43,8 @@ class Build:
     """The executables that `ros2 run` finds in it."""
     left_out: tuple[str, ...] = ()
     """Files in its folder that do not belong to it, each with the reason."""
+    unnamed: tuple[str, ...] = ()
+    """What package.xml should name, too, for a robot; nothing that stops the package here."""
 
 
 def prefix_of(package: str) -> Path:
@@ -79,7 +82,9 @@ def build(package: str, folder: Path) -> Build:
         return Build(package, None, problem, left_out=files.left_out)
     problem = fault_in_words(package, status, words) if status else ''
     problem = problem or fault_in_install(package, prefix_of(package), files)
-    return Build(package, status, problem, words, executables_of(package), files.left_out)
+    unnamed = () if problem else unnamed_needs(package, files)
+    found = executables_of(package)
+    return Build(package, status, problem, words, found, files.left_out, unnamed)
 
 
 def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:

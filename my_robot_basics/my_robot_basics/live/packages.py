@@ -40,6 +40,8 @@ def build_package(name: str) -> None:
     tell(_build_message(built), in_one=False)
     for clause in built.left_out:
         tell(f'not handed in, and not built: {clause}', in_one=False)
+    for clause in built.unnamed:
+        tell(clause, in_one=False)
 
 
 def run_executable(package: str, executable: str, *arguments: str) -> bool:
