@@ -4,7 +4,7 @@ import time
 from dataclasses import replace
 from typing import NoReturn
 
-from my_robot_basics.checks import ignoring, sampling, wall_recording
+from my_robot_basics.checks import ignoring, rates, sampling, wall_recording
 from my_robot_basics.checks.clock_use import are_left_alone
 from my_robot_basics.checks.earlier_looks import Look, Wanted, look_once
 from my_robot_basics.checks.inconclusive import Inconclusive
@@ -100,7 +100,7 @@ def _fail_ended(recorder: Recorder) -> NoReturn:
     fail(
         expected=f'messages on {recorder.topic_name}',
         seen='some, and none any more',
-        hint='publish as long as the node runs, in each call of a timer',
+        hint=rates.GOES_ON,
         cause='the messages end',
     )
 

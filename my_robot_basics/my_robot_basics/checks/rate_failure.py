@@ -48,8 +48,11 @@ def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str
         return seen, cause, hint
     near = recording.rate_hz >= 0.9 * hz
     if recording.is_over and (near or not recording.messages):
-        seen, cause = f'none in the last {recording.silent_sec:.1f} s {over}', 'the messages end'
-        return seen, cause, 'publish as long as the node runs, in each call of a timer'
+        if recording.messages:
+            seen = f'none in the last {recording.silent_sec:.1f} s {over}'
+        else:  # they came before this recording, which is a second look
+            seen = f'some, and none any more over {recording.seconds:.3g} s'
+        return seen, 'the messages end', rates.GOES_ON
     has_pauses = recording.largest_gap_sec > rates.LARGEST_GAP_PERIODS / hz
     if has_pauses and (near or _is_mostly(recording, hz)):
         seen, cause = f'pauses of {recording.largest_gap_sec:.1f} s {over}', 'there are pauses'

@@ -32,6 +32,10 @@ and 0.3 s are not 5 Hz."""
 AT_ONCE_SEC = 0.02
 """Messages closer than this were sent at once: no exercise has a timer of a shorter period."""
 ONCE = 'publish one message each time the timer fires'
+GOES_ON = (
+    'publish in each call of a timer, as long as the node runs, and make this timer once, in '
+    '__init__'
+)
 FEWEST = 2
 """How many messages after the first one show whether they are evenly spaced."""
 
