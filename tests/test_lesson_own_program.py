@@ -90,7 +90,7 @@ def test_the_students_own_node_publishes_from_the_workspace_in_a_process_of_its_
     assert rate == pytest.approx(5.0, abs=1.0)  # neither 4 Hz nor, with the notebook's node, 10
 
 
-def test_where_nothing_is_answered_each_cell_says_in_a_sentence_what_is_missing(tmp_path, modules):
+def test_each_cell_of_an_unanswered_lesson_says_what_is_missing(tmp_path, modules):
     cells = run(tmp_path, UNANSWERED, only=NEEDED)
     assert not (modules / 'five_hz.py').exists()
     assert errors(cells) == {}
@@ -100,7 +100,7 @@ def test_where_nothing_is_answered_each_cell_says_in_a_sentence_what_is_missing(
 
 
 @pytest.mark.slow
-def test_a_greeter_that_fails_ends_with_its_own_exit_status(modules):
+def test_a_cell_reports_the_exit_status_of_a_greeter_that_fails(modules):
     """The cell stops at an error before it, and says how the program itself ended."""
     make_workspace()
     (modules / 'greeter.py').write_text('def main():\n    raise SystemExit(3)\n')
@@ -113,7 +113,7 @@ def test_a_greeter_that_fails_ends_with_its_own_exit_status(modules):
     assert 'the greeter ended' not in said
 
 
-def test_a_name_of_another_cell_is_told_before_anything_is_written(tmp_path, modules):
+def test_a_name_of_another_cell_is_reported_and_no_file_is_written(tmp_path, modules):
     answer = f'import numpy as np\n\n{ANSWER.replace("[0.1, 0.2]", "list(np.zeros(2))")}'
     cells = run(tmp_path, answer, only=NEEDED)
     assert '  np: add the line   import numpy as np' in errors(cells)['own_file']

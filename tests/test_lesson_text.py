@@ -14,7 +14,7 @@ from grader.notebook.lesson_text import KEPT, read_lesson
 
 @pytest.fixture
 def checked(monkeypatch):
-    """How many texts have been checked, by runs that know nothing of each other."""
+    """The texts that were checked; none is cached in memory before the test."""
     lesson_text._packed.cache_clear()
     texts = []
 
@@ -39,7 +39,7 @@ def lesson(**cell):
     return json.dumps(made)
 
 
-def test_a_text_is_checked_once_and_the_next_one_again(checked, tmp_path):
+def test_each_version_of_a_lesson_is_checked_once(checked, tmp_path):
     as_nbformat_does = nbformat.reads(lesson(), as_version=4)
     checked.clear()
     for _ in range(2):
@@ -51,14 +51,16 @@ def test_a_text_is_checked_once_and_the_next_one_again(checked, tmp_path):
 
 
 @pytest.mark.parametrize('kept', ['', '{}', '[1, null]', '["' + '0' * 64 + '"]'])
-def test_what_is_remembered_may_be_damaged(kept, checked, tmp_path):
+def test_a_damaged_record_of_checked_texts_is_written_anew(kept, checked, tmp_path):
     (tmp_path / KEPT).write_text(kept)
     for _ in range(2):
         assert read_anew(lesson(), tmp_path).cells[0].source == '1'
     assert len(checked) == 1
 
 
-def test_nothing_is_remembered_for_ever(checked, tmp_path, monkeypatch):
+def test_the_oldest_checked_text_is_forgotten_when_the_record_is_full(
+    checked, tmp_path, monkeypatch
+):
     monkeypatch.setattr(lesson_text, 'MOST_KEPT', 2)
     for source in ('1', '2', '3', '1'):
         read_anew(lesson(source=source), tmp_path)
@@ -66,20 +68,20 @@ def test_nothing_is_remembered_for_ever(checked, tmp_path, monkeypatch):
     assert len(json.loads((tmp_path / KEPT).read_text())) == 2
 
 
-def test_without_a_gradebook_none_is_made(checked, tmp_path):
+def test_reading_a_lesson_does_not_make_a_gradebook_folder(checked, tmp_path):
     for _ in range(2):
         read_anew(lesson(), tmp_path / 'gradebook')
     assert len(checked) == 2
     assert not (tmp_path / 'gradebook').exists()
 
 
-def test_who_changes_what_was_read_changes_it_for_nobody_else(checked, tmp_path):
+def test_a_change_to_a_lesson_that_was_read_does_not_affect_later_reads(checked, tmp_path):
     read_anew(lesson(), tmp_path).cells[0].source = 'changed'
     assert read_lesson(lesson(), tmp_path).cells[0].source == '1'
 
 
 @pytest.mark.filterwarnings('ignore:Cell is missing an id')
-def test_what_is_added_to_a_text_is_added_each_time(checked, tmp_path):
+def test_a_missing_cell_id_is_added_at_each_read(checked, tmp_path):
     without_id = lesson().replace('"id": "one", ', '')
     for _ in range(2):
         assert read_anew(without_id, tmp_path).cells[0].id
@@ -103,14 +105,14 @@ def test_what_is_added_to_a_text_is_added_each_time(checked, tmp_path):
         ),
     ],
 )
-def test_what_is_no_notebook_is_refused_each_time(text, told, checked, tmp_path):
+def test_a_text_that_is_not_a_notebook_is_refused_at_each_read(text, told, checked, tmp_path):
     for _ in range(2):
         with pytest.raises(ValueError, match=told):
             read_anew(text, tmp_path)
 
 
 @pytest.mark.parametrize('verb', [pytest.param('grade', marks=pytest.mark.starts), 'release'])
-def test_a_lesson_that_is_no_notebook_is_named(verb, tmp_path, capsys):
+def test_grade_and_release_name_a_lesson_that_is_not_a_notebook(verb, tmp_path, capsys):
     course = released_course(tmp_path)
     folder = course.folder('submitted', 'ada', TOY)
     folder.mkdir(parents=True)
@@ -124,7 +126,7 @@ def test_a_lesson_that_is_no_notebook_is_named(verb, tmp_path, capsys):
     assert capsys.readouterr().err == f'course: {path} is not a notebook: {why}\n'
 
 
-def test_a_released_lesson_that_is_no_notebook_is_made_anew(tmp_path, capsys):
+def test_release_replaces_a_released_lesson_that_is_not_a_notebook(tmp_path, capsys):
     course = released_course(tmp_path)
     path = course.release_path(TOY)
     path.write_text('{')

@@ -1,4 +1,4 @@
-"""The lessons keep to their form: how long, what metadata, what a cell may lean on."""
+"""The form of the lessons: their length, their metadata, and what a cell may depend on."""
 
 import ast
 import builtins
@@ -114,7 +114,7 @@ def lesson(path):
     return nbformat.read(path, as_version=4)
 
 
-def test_every_lesson_has_its_contract_here(path):
+def test_every_lesson_is_listed_in_the_contract(path):
     assert path.stem in CONTRACT
     assert path.parent.name == path.stem
 
@@ -165,7 +165,7 @@ EXERCISE_MIN = 4
 """Minutes for each point of an exercise."""
 
 
-def test_opening_says_what_is_needed_before_and_how_long_it_takes(lesson, path):
+def test_opening_names_required_lessons_and_the_estimated_time(lesson, path):
     """An estimate: to read, with the code; to predict and run each demonstration; to answer."""
     row = r'\| you need \| time \|\n\|---\|---\|\n\| (.+) \| about (\d+) minutes \|'
     needs, minutes = re.search(row, lesson.cells[0].source).groups()
@@ -197,7 +197,7 @@ def test_most_demonstrations_come_after_a_prediction(lesson):
     assert sum(predicted) > len(predicted) / 2
 
 
-def test_links_lead_to_what_is_given_out(lesson, path):
+def test_links_lead_to_files_that_are_given_out(lesson, path):
     folder = ROOT / 'notebooks' / path.stem
     links = re.findall(r'\]\((?!https://)([^)]+)\)', prose(lesson))
     assert {link for link in links if not (folder / link).is_file()} == set()
@@ -237,7 +237,7 @@ def test_cell_metadata_is_on_the_allow_list(lesson):
             assert tag == 'demo' or tag.startswith('nbval-'), cell.id
 
 
-def test_cell_ids_are_unique_and_speak(lesson):
+def test_cell_ids_are_unique_and_readable(lesson):
     ids = [cell.id for cell in lesson.cells]
     assert len(set(ids)) == len(ids)
     for cell in lesson.cells:
@@ -279,7 +279,7 @@ def test_cells_of_an_exercise_stand_in_order(lesson, path):
         assert unmarked == [f'{exercise}-try'] * (exercise not in BY_HAND)
 
 
-def test_only_answers_are_open_and_only_grade_cells_have_points(lesson, path):
+def test_only_answers_are_unlocked_and_only_grade_cells_have_points(lesson, path):
     answers = set(CONTRACT[path.stem]) - BY_FOLDER
     for cell in lesson.cells:
         mark = marks(cell)
@@ -318,7 +318,7 @@ def test_a_grade_cell_says_what_it_checks_and_needs_nothing_of_the_lesson(lesson
             assert needed_by(source) == set(), cell.id
 
 
-def test_what_a_grade_cell_calls_is_there(lesson):
+def test_each_check_that_a_grade_cell_calls_exists(lesson):
     """A check that was renamed would stop the cell at grading, and give no verdict."""
     for cell in code_cells(lesson):
         if not marks(cell).get('grade'):
@@ -334,7 +334,7 @@ def test_what_a_grade_cell_calls_is_there(lesson):
                     assert hasattr(owner, node.attr), f'{cell.id}: {ast.unparse(node)}'
 
 
-def test_nodes_obey_what_the_lessons_teach_or_say_why_not(lesson):
+def test_publishers_of_joint_states_set_stamp_and_frame_or_say_why_not(lesson):
     """Nodes that publish joint states set stamp and frame, or a comment says that they do not."""
     for cell in code_cells(lesson):
         source = TransformerManager().transform_cell(cell.source)
@@ -346,7 +346,7 @@ def test_nodes_obey_what_the_lessons_teach_or_say_why_not(lesson):
                     assert 'frame_id' in text, (cell.id, node.name)
 
 
-def test_what_is_to_be_fixed_is_not_pointed_at(lesson):
+def test_no_comment_points_at_the_line_that_is_to_be_fixed(lesson):
     """Hints are above the node; none is at the broken line or next to it."""
     for cell in code_cells(lesson):
         if '### BROKEN' in cell.source:
@@ -422,7 +422,7 @@ def _names(source):
     return stored, loaded
 
 
-# --- what is stored ------------------------------------------------------------------------------
+# --- stored outputs ------------------------------------------------------------------------------
 
 
 def test_stored_outputs_are_those_of_one_clean_run(lesson):
@@ -434,7 +434,7 @@ def test_stored_outputs_are_those_of_one_clean_run(lesson):
             assert output.get('name') != 'stderr', cell.id
 
 
-def test_stored_outputs_name_no_machine(lesson):
+def test_stored_outputs_contain_no_path_of_a_machine(lesson):
     for cell in code_cells(lesson):
         for output in cell.outputs:
             text = str({k: v for k, v in output.get('data', {}).items() if 'image' not in k})

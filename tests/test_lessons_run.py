@@ -1,4 +1,4 @@
-"""The lessons run: twice in one kernel, and, unanswered, up to a check that helps."""
+"""Each lesson runs twice in a kernel; unanswered, only its checks fail and say what is missing."""
 
 import ast
 import dis

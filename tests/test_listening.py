@@ -1,4 +1,4 @@
-"""What the rooms of an exercise reach of each other: ROS, and nothing else."""
+"""The rooms of an exercise reach each other through ROS alone."""
 
 import asyncio
 
@@ -54,5 +54,5 @@ def test_nothing_listens_in_the_shared_network_but_ros(rooms):
     assert rooms(LISTENERS).startswith('tcp []\nraw []\nabstract []\nudp ')
 
 
-def test_what_a_forked_process_prints_is_still_shown(rooms):
+def test_the_output_of_a_forked_process_is_shown(rooms):
     assert rooms(FORKS) == 'from a child\n'

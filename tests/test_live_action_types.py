@@ -15,7 +15,7 @@ pytestmark = pytest.mark.starts
 
 
 class Mover(Node):
-    """Makes both ends of an action, of a type each."""
+    """Makes both ends of an action; each end has its own type."""
 
     def __init__(self, served, asked=MoveArm):
         super().__init__('mover')
@@ -41,7 +41,7 @@ def stopped():
         ('/move', "'/move'"),
     ],
 )
-def test_what_is_no_type_of_an_action_is_named(given, seen):
+def test_an_object_that_is_not_an_action_type_is_named_in_the_error(given, seen):
     """Most of these would end this process."""
     for maker, types in ('ActionServer', (given,)), ('ActionClient', (MoveArm, given)):
         with pytest.raises(WrongType) as refused:
@@ -50,17 +50,17 @@ def test_what_is_no_type_of_an_action_is_named(given, seen):
         assert str(refused.value) == f'{words}write {maker}(self, MoveArm, …)'
 
 
-def test_the_type_of_an_action_is_taken():
+def test_an_action_type_is_accepted():
     assert run(Mover, MoveArm).client.server_is_ready() in (True, False)
 
 
-def test_what_rclpy_says_of_a_type_that_is_left_out_stays():
+def test_a_missing_action_type_raises_the_error_of_rclpy():
     run(Mover, MoveArm)
     with pytest.raises(TypeError, match=r"missing .* 'action_type' and 'action_name'"):
         ActionClient(Mover(MoveArm))
 
 
-def test_it_is_said_in_chinese():
+def test_the_error_about_a_wrong_action_type_is_translated_to_chinese():
     english = (
         'WrongType: ActionClient expects the type of an action, such as MoveArm, and got SolveIK, '
         'the type of a service: write ActionClient(self, MoveArm, …)'

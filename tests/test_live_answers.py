@@ -14,7 +14,7 @@ def nothing_runs(request):
     yield from stop_nodes_after(request)
 
 
-def test_reset_and_run_answer(lesson):
+def test_reset_forgets_an_answer_and_run_answer_runs_only_the_students_own_node(lesson):
     lesson.run('run(Talker)')
     lesson.run('class Answer(Talker): pass')
     assert 'reset' in lesson.run("reset('Answer', 'never_defined')").stdout
@@ -39,7 +39,7 @@ def test_reset_and_run_answer(lesson):
     assert lesson.run('rclpy.init(); rclpy.shutdown()').error is None
 
 
-def test_an_answer_that_makes_its_node_and_does_not_spin_it_is_told_so(lesson):
+def test_run_answer_reports_a_node_that_the_answer_made_and_nothing_spins(lesson):
     lesson.run("reset('Answer')")
     lesson.run('class Answer(Talker): pass\nrclpy.init()\nmine = Answer()')
     error = lesson.run("run_answer('Answer')").error
@@ -50,7 +50,7 @@ def test_an_answer_that_makes_its_node_and_does_not_spin_it_is_told_so(lesson):
     lesson.run('reset()')
 
 
-def test_an_answer_whose_node_another_cell_has_ended_is_told_so(lesson):
+def test_why_not_running_says_what_ended_the_node_of_an_answer(lesson):
     lesson.run('from my_robot_basics.graph.not_running import why_not_running')
     lesson.run("reset('Answer')\nclass Answer(Talker): pass\nrun_answer('Answer', 'yes')")
     unknown = 'the node is not running, so run the cell'
@@ -86,7 +86,7 @@ class Answer(Node):
 
 
 @pytest.mark.parametrize('definition', TAKEN.values(), ids=TAKEN)
-def test_no_answer_is_made_of_the_courses_nodes(lesson, definition):
+def test_an_answer_that_uses_a_node_of_the_course_is_refused(lesson, definition):
     lesson.run("reset('Answer')")
     assert lesson.run(definition).error is None
     error = ' '.join(lesson.run("run_answer('Answer')").error.split())
@@ -102,7 +102,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize('words', PROGRAMS.values(), ids=PROGRAMS)
-def test_no_answer_is_a_program_of_the_courses_nodes(lesson, words):
+def test_an_answer_that_starts_a_program_of_the_course_is_refused(lesson, words):
     start = f'subprocess.Popen([{words}], stderr=subprocess.DEVNULL)'
     lesson.run(f'import subprocess, sys\nbefore = {start}')
     lesson.run("reset('Answer')")

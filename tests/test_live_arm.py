@@ -78,7 +78,7 @@ def test_moving_leaves_nothing_of_the_former_pose():
     assert np.array_equal(imread(io.BytesIO(picture.png())), imread(io.BytesIO(first)))
 
 
-def test_a_second_pose_is_dashed_and_dots_stand_where_they_are_said_to(capsys):
+def test_a_second_pose_is_dashed_and_dots_are_drawn_at_their_coordinates(capsys):
     picture = ArmPicture(l1=1.0, l2=0.8)
     picture.dashed(0, 90)
     picture.dots([0.5, -0.5], [1.0, 1.0])
@@ -91,12 +91,12 @@ def test_a_second_pose_is_dashed_and_dots_stand_where_they_are_said_to(capsys):
 
 
 @pytest.mark.parametrize('pose', [(math.nan, 0.0), (0.0, math.inf)])
-def test_a_pose_that_is_none_is_refused(pose):
+def test_a_pose_that_is_not_finite_is_refused(pose):
     with pytest.raises(ValueError, match=r'finite|NaN|nan|inf'):
         show_arm(*pose)
 
 
-def test_outside_a_notebook_the_arm_is_told_in_words(capsys):
+def test_show_arm_prints_the_pose_outside_a_notebook(capsys):
     show_arm(23.4, -67.8)
     assert 'θ1 = 23.4°' in capsys.readouterr().out
 
@@ -112,7 +112,7 @@ def test_outside_a_notebook_the_arm_is_told_in_words(capsys):
         (JointState(name=['joint1', 'joint2'], position=[0.1, math.nan]), 'joint2 is nan'),
     ],
 )
-def test_messages_without_a_pose(message, wrong):
+def test_a_joint_state_without_a_pose_is_reported_with_the_reason(message, wrong):
     assert wrong in what_is_wrong(message)
     assert bool(what_is_wrong(message)) is bool(wrong)
 

@@ -18,11 +18,11 @@ from my_robot_basics.live.branches import branch_of
         ((45.0, 0.0), 'elbow_up'),
     ],
 )
-def test_the_branch_of_a_pose(pose, branch):
+def test_branch_of_returns_the_ik_branch_of_a_pose(pose, branch):
     assert branch_of(*pose) == branch
 
 
-def test_the_sign_of_theta2_decides():
+def test_the_sign_of_theta2_decides_the_branch():
     poses = random.Random(1)
     for _ in range(500):
         theta1_deg, theta2_deg = poses.uniform(-180, 180), poses.uniform(-179, 179)
@@ -30,7 +30,7 @@ def test_the_sign_of_theta2_decides():
         assert branch_of(theta1_deg, theta2_deg) == expected
 
 
-def test_an_answer_in_neither_branch_is_an_error(monkeypatch):
+def test_a_pose_in_neither_branch_raises_an_error(monkeypatch):
     monkeypatch.setattr(branches, 'inverse_kinematics', lambda *_: {'elbow_up': (1.0, 2.0)})
     with pytest.raises(ValueError, match=r'θ1 = 10°, θ2 = 20° in neither branch'):
         branch_of(10, 20)

@@ -1,4 +1,4 @@
-"""The camera in its own process: each picture is sent once, and what goes wrong is said."""
+"""The camera in its own process: each picture is sent once, and errors are reported."""
 
 import subprocess
 
@@ -16,7 +16,7 @@ def viewer():
     stop()
 
 
-def test_who_asks_for_all_pictures_gets_them_in_their_order(viewer):
+def test_a_subscription_with_a_deep_queue_receives_all_pictures_in_order(viewer):
     numbers = []
     viewer.create_subscription(
         Image, '/camera', lambda p: numbers.append(int(p.header.frame_id)), QoSProfile(depth=12)
@@ -42,7 +42,7 @@ def test_a_short_queue_of_the_publisher_loses_pictures_though_it_is_reliable(vie
     assert numbers == [*range(1, 61)]
 
 
-def test_a_camera_that_nobody_watches_says_so(monkeypatch):
+def test_a_camera_without_subscriptions_ends_with_an_error(monkeypatch):
     monkeypatch.setattr(camera, 'SUBSCRIPTIONS_SEC', 0.2)
     rclpy.try_shutdown()  # the camera begins in a process where nothing was initialised
     with pytest.raises(SystemExit, match=r'0 subscriptions in 0\.2 s'):
@@ -50,14 +50,14 @@ def test_a_camera_that_nobody_watches_says_so(monkeypatch):
     rclpy.try_shutdown()
 
 
-def test_what_the_camera_says_is_told(monkeypatch):
+def test_send_pictures_reports_the_error_of_the_camera_process(monkeypatch):
     ended = subprocess.CompletedProcess([], 1, stdout='', stderr='Traceback\nno memory')
     monkeypatch.setattr(camera.subprocess, 'run', lambda *args, **kwargs: ended)
     with pytest.raises(camera.NoPictures, match='saw the camera end with: no memory'):
         send_pictures(2, subscriptions=1)
 
 
-def test_nobody_waits_for_ever(monkeypatch, viewer):
+def test_send_pictures_raises_an_error_if_the_camera_runs_too_long(monkeypatch, viewer):
     monkeypatch.setattr(camera, 'TIMEOUT_SEC', 0.1)
     with pytest.raises(camera.NoPictures, match=r'within 0\.1 s, saw it still run'):
         send_pictures(2, subscriptions=1)

@@ -37,7 +37,7 @@ def seen(**environment):
     return json.loads(enter(**environment).stdout)
 
 
-def test_sets_what_a_lesson_needs():
+def test_enter_sets_the_environment_that_a_lesson_needs():
     env = seen(AMENT_PREFIX_PATH='/opt/ros')
     assert 1 <= env['domain_id'] <= 101
     assert env['ROS_DOMAIN_ID'] == str(env['domain_id'])
@@ -56,7 +56,7 @@ def test_a_traceback_reads_the_same_on_each_python():
     assert run.stderr.splitlines()[-1] == 'ZeroDivisionError: division by zero'
 
 
-def test_a_prefix_that_is_there_stays_where_it_is():
+def test_a_prefix_that_is_already_in_the_path_keeps_its_position():
     path = f'/opt/ros:{sys.prefix}'
     assert seen(AMENT_PREFIX_PATH=path)['AMENT_PREFIX_PATH'] == path
 
@@ -82,7 +82,7 @@ def test_a_bad_domain_is_refused(given):
 
 
 @pytest.mark.parametrize(('room', 'expected'), [('test', 'SUBNET'), ('', 'LOCALHOST')])
-def test_only_a_grading_room_keeps_a_network_of_its_own(room, expected):
+def test_only_a_grading_room_keeps_its_discovery_range(room, expected):
     given = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}
     if room:
         given['MY_ROBOT_BASICS_ROOM'] = room
@@ -90,7 +90,7 @@ def test_only_a_grading_room_keeps_a_network_of_its_own(room, expected):
 
 
 @pytest.mark.starts
-def test_who_sends_is_told_soon_that_a_message_has_arrived():
+def test_a_publisher_receives_acknowledgements_within_a_second():
     """Without our request, DDS asks only after 3 s, and each message of a check took that long."""
     classroom.enter()
     with running('ik_client'), Watcher() as watcher:

@@ -31,7 +31,7 @@ def notebook(monkeypatch):
     ]
 
 
-def test_a_command_runs_until_all_is_stopped(notebook, capsys):
+def test_commands_run_until_live_stop(notebook, capsys):
     notebook(left=f'{START} -r __ns:=/left', right=f'{START} -r __ns:=/right')
     live.run_commands('left', 'right')
     assert capsys.readouterr().out == 'left: started\nright: started\n'
@@ -42,7 +42,7 @@ def test_a_command_runs_until_all_is_stopped(notebook, capsys):
     assert commands._running == []
 
 
-def test_what_ran_before_is_replaced(notebook):
+def test_running_a_command_again_replaces_its_process(notebook):
     notebook(left=START)
     live.run_commands('left')
     [before] = commands._running
@@ -52,7 +52,7 @@ def test_what_ran_before_is_replaced(notebook):
     assert after.process.poll() is None
 
 
-def test_what_a_command_says_last_is_printed_when_it_ends(notebook, capsys, monkeypatch):
+def test_the_last_output_of_a_command_that_ends_is_printed(notebook, capsys, monkeypatch):
     monkeypatch.setattr(commands, 'STARTED_SEC', 60.0)  # a slow start is not what this is about
     notebook(left=f'{START} -r __ns:=left')
     live.run_commands('left')
@@ -69,7 +69,9 @@ def test_what_a_command_says_last_is_printed_when_it_ends(notebook, capsys, monk
         (f'{START}; touch here', 'left: expected one command line, saw the word ;: write one'),
     ],
 )
-def test_what_is_no_command_line_is_not_run(notebook, tmp_path, monkeypatch, value, words):
+def test_a_value_that_is_not_one_command_line_is_not_run(
+    notebook, tmp_path, monkeypatch, value, words
+):
     monkeypatch.chdir(tmp_path)
     notebook(left=value, right=START)
     with pytest.raises(NotRunnable, match=words):
@@ -78,7 +80,7 @@ def test_what_is_no_command_line_is_not_run(notebook, tmp_path, monkeypatch, val
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_text_that_changes_its_mind_is_not_run(notebook):
+def test_a_subclass_of_str_is_not_run_as_a_command_line(notebook):
     class Text(str):
         def strip(self):
             return START
@@ -114,6 +116,6 @@ def is_alive(pid):
         return stat.read().rpartition(')')[2].split()[0] != 'Z'
 
 
-def test_the_words_after_ros2_are_those_of_the_text():
+def test_a_parsed_command_line_begins_with_ros2():
     line = command_line.parse(START, package='my_robot_basics', executable='kinematics_publisher')
     assert line.words[0] == 'ros2'

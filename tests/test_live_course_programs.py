@@ -1,4 +1,4 @@
-"""Which of the course's own programs a notebook has started, itself or by another program."""
+"""The programs of the course that a notebook has started, directly or by another program."""
 
 import sys
 import time
@@ -36,7 +36,7 @@ def start():
 
 
 def found(*, besides=()):
-    """What is found, waited for: a program starts another one a while after its own start."""
+    """Wait until a program is found: one may start another a while after its own start."""
     until = time.monotonic() + TIMEOUT_SEC
     while not (names := course_nodes.programs(besides=besides)) and time.monotonic() < until:
         time.sleep(0.05)
@@ -46,14 +46,14 @@ def found(*, besides=()):
 @pytest.mark.parametrize(
     ('code', 'arguments'), [(STARTS_ANOTHER, []), (SLEEPS, [NAMED])], ids=['by another', 'itself']
 )
-def test_a_program_of_the_course_is_found_whoever_started_it(start, code, arguments):
+def test_a_course_program_is_found_also_if_another_program_started_it(start, code, arguments):
     child = start(code, *arguments)
     names = found()
     assert [*names.values()] == ['kinematics_publisher']
     assert not course_nodes.programs(besides=[child])
 
 
-def test_a_program_of_the_same_name_elsewhere_is_none_of_the_course(start):
+def test_a_program_of_another_package_with_the_same_name_is_not_found(start):
     start(SLEEPS, 'my_robot_basics_of_mine.kinematics_publisher')
     own = start(SLEEPS, NAMED)
     assert [*found()] == [own]

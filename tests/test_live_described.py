@@ -1,4 +1,4 @@
-"""A picture's words, in each place where somebody looks for them."""
+"""The description of a picture is in each place where a reader or a program looks for it."""
 
 import base64
 
@@ -7,7 +7,7 @@ from my_robot_basics.drawing.described import described
 PNG = b'\x89PNG and so on'
 
 
-def test_the_words_stand_beside_the_pixels_and_in_the_metadata():
+def test_a_description_is_beside_the_pixels_and_in_the_metadata():
     bundle, metadata = described(PNG, 'an arm')
     source = base64.b64encode(PNG).decode()
     assert bundle == {
@@ -18,7 +18,7 @@ def test_the_words_stand_beside_the_pixels_and_in_the_metadata():
     assert metadata == {'image/png': {'alt': 'an arm'}}
 
 
-def test_words_of_several_lines_become_one_and_nothing_in_them_is_markup():
+def test_a_description_of_several_lines_is_joined_and_its_markup_is_escaped():
     bundle, metadata = described(PNG, 'saw "1"\nand <b>2</b>')
     assert metadata['image/png']['alt'] == 'saw "1"; and <b>2</b>'
     assert 'alt="saw &quot;1&quot;; and &lt;b&gt;2&lt;/b&gt;"' in bundle['text/html']

@@ -1,4 +1,4 @@
-"""A node that is stopped is gone with its action servers and clients, even while it is kept."""
+"""A stopped node leaves the graph with its action servers and clients, even if referenced."""
 
 import gc
 
@@ -38,14 +38,14 @@ def test_a_stopped_node_leaves_the_graph(run, node_class):
     assert name not in graph().nodes()
 
 
-def test_who_fails_in_the_constructor_leaves_it_too(run):
+def test_a_node_that_fails_in_its_constructor_leaves_the_graph(run):
     with pytest.raises(RuntimeError, match='no') as failure:
         run(Fails)
     assert '/move_arm_server' not in graph().nodes()
     assert failure.value.args[1].server is not None
 
 
-def test_the_server_of_a_node_that_is_replaced_answers_no_more(run):
+def test_the_action_server_of_a_replaced_node_executes_no_goal(run):
     first = run(MoveArmServer)
     run(MoveArmServer)
     assert action('/move_arm', MoveArm).send_goal(moves.goal((0.2, 0.1))).status == 'succeeded'
@@ -58,7 +58,7 @@ class Speaker(Node):
         self.logger = self.get_logger().get_child('voice')
 
 
-def test_the_child_loggers_of_a_successor_go_on_when_the_former_is_garbage(run):
+def test_child_loggers_of_a_new_node_still_log_after_the_old_logger_is_collected(run):
     heard = []
     with Watcher(listens=True) as watcher:
         latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)

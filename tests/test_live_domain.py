@@ -1,4 +1,4 @@
-"""One ROS domain per kernel: claimed by the first, gone with its holder."""
+"""One ROS domain per kernel: the first to claim a domain holds it, until its process ends."""
 
 import os
 import signal
@@ -28,12 +28,12 @@ def test_each_claim_gets_the_first_free_domain(few_domains):
     assert domain.claim().domain_id == few_domains
 
 
-def test_the_real_range_leaves_out_everybodys_domain_and_the_ports_of_others():
+def test_domains_are_claimed_from_1_to_101():
     code = 'from my_robot_basics.session import domain; print(domain.FIRST, domain.LAST)'
     assert _python(code).split() == ['1', '101']
 
 
-def test_all_taken_is_said_clearly():
+def test_an_error_says_that_all_domains_are_taken():
     claims = [domain.claim() for _ in range(3)]
     with pytest.raises(NoFreeDomain, match=r'all 3 ROS domains .* shut down kernels'):
         domain.claim()
@@ -47,7 +47,7 @@ def test_an_error_shows_one_line_in_a_notebook():
 
 
 @pytest.mark.parametrize('child', ['started', 'forked'])
-def test_a_killed_holder_lets_go_though_its_child_lives(few_domains, child):
+def test_a_killed_holder_frees_its_domain_though_its_child_lives(few_domains, child):
     start = {
         'started': 'subprocess.Popen(["sleep", "30"], stdout=subprocess.DEVNULL, close_fds=False)'
         '; pid = child.pid',
@@ -80,7 +80,7 @@ time.sleep(30)
         holder.stdout.close()
 
 
-def test_a_forked_child_does_not_give_its_parents_domain_away(few_domains):
+def test_a_forked_child_does_not_free_the_domain_of_its_parent(few_domains):
     claim = domain.claim()
     pid = os.fork()
     if pid == 0:

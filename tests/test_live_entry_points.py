@@ -36,7 +36,7 @@ def refusal(entry_point=LINE):
     return str(caught.value)
 
 
-def test_the_line_is_the_first_of_its_list_and_all_else_stays(setup_file, capsys):
+def test_an_entry_point_is_added_first_and_the_rest_of_setup_py_is_unchanged(setup_file, capsys):
     before, listed = setup_file.read_text(), scripts(setup_file)
     add_entry_point(LINE)
     assert scripts(setup_file) == [LINE, *listed]
@@ -47,7 +47,7 @@ def test_the_line_is_the_first_of_its_list_and_all_else_stays(setup_file, capsys
     assert said[-2:] == [f'    {listed[-1]!r},', ']']
 
 
-def test_a_second_time_it_is_kept(setup_file, capsys):
+def test_adding_an_entry_point_again_changes_nothing(setup_file, capsys):
     add_entry_point(LINE)
     once = setup_file.read_text()
     capsys.readouterr()
@@ -59,7 +59,7 @@ def test_a_second_time_it_is_kept(setup_file, capsys):
 @pytest.mark.parametrize(
     'listed', ["['a = b:c', 'd = e:f']", '[]', "[\n  'a = b:c']", "['ä = b:c',\n 'd = e:f',\n]"]
 )
-def test_a_list_of_any_form_takes_it(setup_file, listed):
+def test_an_entry_point_is_added_to_a_list_of_any_form(setup_file, listed):
     text = (
         f"# mine\nsetup(x='ü', entry_points={{'console_scripts': {listed}}}, y=1)  # mine, too\n"
     )
@@ -71,7 +71,7 @@ def test_a_list_of_any_form_takes_it(setup_file, listed):
     assert after.endswith('}, y=1)  # mine, too\n')
 
 
-def test_another_function_of_that_name_is_left_alone(setup_file):
+def test_an_entry_point_of_the_same_name_is_left_alone_and_reported(setup_file):
     text = setup_file.read_text().replace('hello_node =', 'greeter =')
     setup_file.write_text(text)
     assert refusal().startswith(
@@ -80,21 +80,19 @@ def test_another_function_of_that_name_is_left_alone(setup_file):
     assert setup_file.read_text() == text
 
 
-def test_a_setup_without_the_list_is_left_alone(setup_file):
+def test_a_setup_py_without_console_scripts_is_left_alone_and_reported(setup_file):
     setup_file.write_text('from setuptools import setup\n')
     assert f"has no list 'console_scripts' any more: add '{LINE}' yourself" in refusal()
     assert setup_file.read_text() == 'from setuptools import setup\n'
 
 
 @pytest.mark.parametrize('name', ['setup.py', 'my_robot_basics/greeter.py'])
-def test_what_does_not_parse_is_told_with_its_line(package, name):
+def test_a_file_that_is_not_valid_python_is_reported_with_the_line(package, name):
     (package / name).write_text('x = 1\ndef main(:\n')
     assert f'{name} is not valid Python (line 2: ' in refusal()
 
 
-def test_a_module_that_is_to_come_is_told_with_the_cell_that_writes_it(
-    package, setup_file, capsys
-):
+def test_a_missing_module_is_reported_with_the_cell_that_writes_it(package, setup_file, capsys):
     before = setup_file.read_text()
     (package / 'my_robot_basics/greeter.py').unlink()
     add_entry_point(LINE)
@@ -104,16 +102,16 @@ def test_a_module_that_is_to_come_is_told_with_the_cell_that_writes_it(
     assert setup_file.read_text() == before
 
 
-def test_a_function_that_is_not_there_is_told(package):
+def test_a_missing_function_is_reported(package):
     (package / 'my_robot_basics/greeter.py').write_text('def start():\n    pass\n')
     assert 'greeter.py has no function main: write it there' in refusal()
 
 
-def test_without_a_workspace_it_names_the_cell_to_run(package, setup_file):
+def test_the_error_without_a_workspace_names_the_cell_to_run(package, setup_file):
     setup_file.unlink()
     assert refusal().endswith('run the cell with make_workspace() first')
 
 
 @pytest.mark.parametrize('line', ['', 'greeter', 'greeter = other.greeter:main', "a' = b.c:d"])
-def test_what_is_no_entry_point_of_the_package_is_refused(package, line):
+def test_a_text_that_is_not_an_entry_point_of_the_package_is_refused(package, line):
     assert refusal(line).startswith("expected an entry point such as 'greeter = ")

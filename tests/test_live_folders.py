@@ -52,14 +52,14 @@ def submit(inbound, student, uid, content='{}'):
 
 
 def put(file, uid):
-    """Write a file of a user's that holds nothing but whose it is."""
+    """Write a file that belongs to a user and contains only the number of that user."""
     file.parent.mkdir(exist_ok=True, parents=True)
     file.write_text(str(uid))
     os.chown(file, uid, uid)
 
 
 def collected(inbound, tmp_path):
-    """Match what is there; return whose each is, by content, and the reasons of the rest."""
+    """Match the files; return the student of each by its content, and the reasons of refusals."""
     aside = tmp_path / 'aside'
     aside.mkdir(exist_ok=True)
     taken, left = match(list(look_into(inbound, aside)), [LESSON])
@@ -69,7 +69,7 @@ def collected(inbound, tmp_path):
 
 
 @needs_root
-def test_a_folder_is_its_owners_whoever_it_is_named_after(inbound, tmp_path):
+def test_a_folder_named_after_another_student_than_its_owner_is_refused(inbound, tmp_path):
     submit(inbound, 'alice', ALICE, "alice's")
     submit(inbound, 'bob', ALICE, "alice's, as bob")
     whose, reasons = collected(inbound, tmp_path)
@@ -79,7 +79,7 @@ def test_a_folder_is_its_owners_whoever_it_is_named_after(inbound, tmp_path):
 
 
 @needs_root
-def test_when_it_was_handed_in_is_when_linux_saw_it_written(inbound, tmp_path):
+def test_the_time_of_a_submission_is_its_change_time_not_a_time_that_was_set(inbound, tmp_path):
     before = datetime.now(UTC).replace(microsecond=0)
     folder = submit(inbound, 'alice', ALICE)
     os.utime(folder / f'{LESSON}.ipynb', (0, 0))
@@ -101,10 +101,8 @@ def test_a_file_of_another_user_in_a_students_folder_is_refused(owner, inbound, 
 
 
 @needs_root
-def test_what_another_user_puts_into_a_folder_of_the_teachers_is_not_the_students(
-    inbound, tmp_path
-):
-    """Nor is bob's own package passed over for one that alice laid before it."""
+def test_files_of_other_users_in_an_instructors_folder_are_left_out(inbound, tmp_path):
+    """Bob's own package is taken, though alice put one of the same name before it."""
     theirs = inbound / 'bob'
     theirs.mkdir()
     theirs.chmod(0o1777)
@@ -130,8 +128,8 @@ def test_what_another_user_puts_into_a_folder_of_the_teachers_is_not_the_student
 
 @needs_root
 @pytest.mark.parametrize('late', ['own.py', 'greeter/greeter/node.py'])
-def test_who_goes_on_with_another_file_of_it_hands_in_later(late, inbound, tmp_path):
-    """A stub that is in time does not let its package be finished in its place."""
+def test_a_later_change_to_another_file_makes_a_submission_later(late, inbound, tmp_path):
+    """A package that is finished after the deadline is late, though its notebook was in time."""
     folder = submit(inbound, 'bob', BOB)
     for name in ('own.py', 'greeter/greeter/node.py'):
         put(folder / name, BOB)
@@ -149,7 +147,7 @@ def test_who_goes_on_with_another_file_of_it_hands_in_later(late, inbound, tmp_p
 
 
 @needs_root
-def test_who_has_no_name_here_hands_nothing_in(inbound, tmp_path):
+def test_a_submission_of_a_user_without_a_name_on_the_machine_is_refused(inbound, tmp_path):
     submit(inbound, 'alice', STRANGER)
     whose, reasons = collected(inbound, tmp_path)
     assert whose == {}
@@ -157,15 +155,15 @@ def test_who_has_no_name_here_hands_nothing_in(inbound, tmp_path):
 
 
 @needs_root
-def test_a_hard_link_to_another_files_content_is_a_link(inbound, tmp_path):
+def test_a_hard_link_to_another_file_is_refused(inbound, tmp_path):
     work = tmp_path / 'work.ipynb'
     work.write_text('secret')
     os.link(work, inbound / f'bob_{LESSON}.ipynb')
     assert collected(inbound, tmp_path) == ({}, [live_folders.LINK])
 
 
-def test_what_a_platform_put_there_is_named_by_the_platform(inbound, tmp_path):
-    """All files have one owner: whoever owns the folder, or collects."""
+def test_files_that_a_platform_wrote_are_assigned_by_their_names(inbound, tmp_path):
+    """All files have one owner: the owner of the folder, or the user who collects."""
     submit(inbound, 'alice', os.geteuid(), "alice's")
     submit(inbound, 'bob', os.geteuid(), "bob's")
     whose, reasons = collected(inbound, tmp_path)
@@ -173,7 +171,7 @@ def test_what_a_platform_put_there_is_named_by_the_platform(inbound, tmp_path):
 
 
 @needs_root
-def test_the_owner_of_the_folder_may_be_a_platform_of_its_own(inbound, tmp_path):
+def test_files_of_the_owner_of_the_inbound_folder_are_assigned_by_their_names(inbound, tmp_path):
     os.chown(inbound, STRANGER, STRANGER)
     submit(inbound, 'bob', STRANGER, "bob's")
     assert collected(inbound, tmp_path) == ({"bob's": 'bob'}, [])
@@ -200,7 +198,7 @@ def test_a_link_swapped_in_between_look_and_read_is_never_followed(inbound, tmp_
     assert reasons == ['it cannot be read: Too many levels of symbolic links']
 
 
-def test_no_swap_of_hundreds_wins(inbound, tmp_path):
+def test_no_link_is_followed_while_links_are_swapped_in_all_the_time(inbound, tmp_path):
     folder = submit(inbound, 'alice', os.geteuid(), 'honest')
     secret, target = tmp_path / 'secret.ipynb', folder / f'{LESSON}.ipynb'
     secret.write_text('secret')
@@ -247,7 +245,9 @@ def test_a_file_that_grows_while_it_is_read_is_not_taken(inbound, tmp_path, monk
 
 
 @needs_root
-def test_a_student_with_a_million_files_costs_only_themselves(inbound, tmp_path, monkeypatch):
+def test_a_student_with_too_many_files_does_not_affect_other_students(
+    inbound, tmp_path, monkeypatch
+):
     monkeypatch.setattr(live_folders, 'ONE', {'files': 10, 'bytes': 1_000})
     folder = submit(inbound, 'alice', ALICE)
     for number in range(20):
@@ -276,7 +276,9 @@ def no_calendar(monkeypatch):
 
 
 @pytest.mark.parametrize('owner', [pytest.param(ALICE, marks=needs_root), os.geteuid()])
-def test_a_time_that_no_calendar_has_costs_nothing(owner, inbound, tmp_path, no_calendar):
+def test_a_file_with_a_time_beyond_the_calendar_is_taken_without_that_time(
+    owner, inbound, tmp_path, no_calendar
+):
     folder = submit(inbound, 'alice', owner)
     (folder / 'timestamp.txt').unlink()
     found = [each for each in look_into(inbound, tmp_path) if each.parts[-1].endswith('.ipynb')]

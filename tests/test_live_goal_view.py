@@ -58,7 +58,7 @@ PATHS = {
 
 
 @pytest.mark.parametrize('state', PATHS)
-def test_a_state_shows_those_before_it_too(view, state):
+def test_a_goal_state_is_shown_with_the_states_before_it(view, state):
     assert words(view) == NEVER_SEEN
     view.take_status(statuses(first=state))
     assert words(view) == f'/move_arm: {PATHS[state]}'
@@ -99,14 +99,14 @@ def test_feedback_that_gives_no_pose_is_not_drawn(view, position):
     assert words(view) == NEVER_SEEN
 
 
-def test_nothing_known_is_nothing_filled_in(view):
+def test_no_state_is_filled_in_before_a_goal_is_known(view):
     view.take_status(GoalStatusArray())
     view._bundle()
     boxes = view._picture._boxes.values()
     assert {box.get_bbox_patch().get_facecolor() for box in boxes} == {(1.0, 1.0, 1.0, 1.0)}
 
 
-def test_it_needs_no_more_than_the_width_of_a_phone_and_no_words_touch(view):
+def test_the_goal_picture_fits_a_phone_and_its_texts_do_not_overlap(view):
     view.take_status(statuses(first='CANCELED'))
     picture = matplotlib.image.imread(BytesIO(view._bundle()['image/png']))
     assert picture.shape[1] <= 400
@@ -130,7 +130,7 @@ class Quick(Node):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_a_running_action_tells_all_of_it():
+def test_the_view_shows_states_and_feedback_of_a_running_action():
     view = GoalView('/quick', l1=1.0, l2=0.8)
     run(Quick)
     run(GoalFollower, '_follower', '/quick', view)

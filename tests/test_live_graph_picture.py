@@ -1,4 +1,4 @@
-"""The graph as a picture: who is where, and the same in words."""
+"""The graph as a picture: the places of nodes and topics, and the same in words."""
 
 import io
 from collections import defaultdict
@@ -118,7 +118,7 @@ def test_an_empty_graph_has_a_picture():
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_live_nodes_are_shown_and_hidden_ones_and_ros_own_topics_are_not(capsys):
+def test_the_graph_shows_live_nodes_but_no_hidden_nodes_or_topics_of_ros(capsys):
     talker, listener, hidden = (live.run(Node, n, key=n) for n in ('talker', 'listener', '_own'))
     for node in talker, hidden:
         node.create_publisher(String, '/talk', 10)

@@ -55,7 +55,7 @@ def test_a_cell_that_spins_for_ever_can_be_interrupted(lesson, endless):
     lesson.run('node.destroy_node()')
 
 
-def test_a_cell_that_spins_is_told_how_to_stop_and_how_to_go_on(lesson):
+def test_a_cell_that_spins_says_how_to_stop_and_how_to_go_on(lesson):
     lesson.run(f'{SILENT}\nif not rclpy.ok(): rclpy.init()')
     cell = lesson.send('node = Silent()\nrclpy.spin(node)')
     assert lesson.wait_for(lambda: '■ (Interrupt the kernel)' in cell.stdout)
@@ -85,7 +85,7 @@ finally:
     rclpy.shutdown()"""
 
 
-def test_a_program_pasted_into_a_cell_ends_as_on_a_robot_each_time():
+def test_a_pasted_program_catches_each_interrupt_as_it_does_on_a_robot():
     # in a new kernel: what an earlier rclpy.init has left may keep rclpy's handler away
     lesson = Lesson(TALKER)
     try:
@@ -105,7 +105,7 @@ def ends_when_interrupted(lesson, program):
     assert (cell.error, cell.stdout.splitlines()[-1]) == (None, 'caught')
 
 
-def test_a_program_spins_after_one_that_was_interrupted_as_rclpy_made_its_executor(lesson):
+def test_a_program_spins_after_an_interrupt_while_rclpy_made_an_executor(lesson):
     lesson.run('reset()\nfrom unittest.mock import patch')
     # what rclpy calls when it has kept the executor, and before it would drop it at a shutdown
     moment = "with patch('rclpy.get_default_context', side_effect=KeyboardInterrupt):"
@@ -114,7 +114,7 @@ def test_a_program_spins_after_one_that_was_interrupted_as_rclpy_made_its_execut
     ends_when_interrupted(lesson, PROGRAM)
 
 
-def test_an_interrupt_that_meets_the_deletion_of_an_object_is_not_lost(lesson):
+def test_an_interrupt_during_the_deletion_of_an_object_is_not_lost(lesson):
     lesson.run(f"""{SILENT}
 class Meeting:
     def __del__(self):
@@ -142,25 +142,25 @@ def interrupt(ask, thread):
 
 
 @pytest.mark.skipif(sys.version_info >= (3, 13), reason='a thread has no such lock')
-def test_an_interrupt_takes_no_thread_for_dead(lesson):
-    """As ipykernel's that sends a kernel's outputs: two would send them at the same time then."""
+def test_a_running_thread_still_counts_as_alive_after_an_interrupt(lesson):
+    """Such as ipykernel's thread that sends outputs: if it seemed dead, two threads would send."""
     lesson.run(f"""{MEETING}
 import threading
 end = threading.Event()
 runs = threading.Thread(target=end.wait); runs.start()
 interrupt(runs.is_alive, runs)""")
     assert lesson.value('runs.is_alive()') == 'True'
-    # where it has ended, as whoever asked was interrupted, that is not forgotten
+    # a thread that ended during an interrupted join is known to have ended
     lesson.run('end.set(); interrupt(runs.join, runs); runs.join()')
     assert lesson.value('runs.is_alive()') == 'False'
 
 
-def test_where_work_is_graded_rclpy_is_as_it_is_on_a_robot():
+def test_rclpy_is_unchanged_in_a_grading_room():
     room = "import os; os.environ['MY_ROBOT_BASICS_ROOM'] = 'student'"
     lesson = Lesson(room, 'import rclpy; spin, init = rclpy.spin, rclpy.init', TALKER)
     try:
         assert lesson.value('(rclpy.spin, rclpy.init) == (spin, init)') == 'True'
-        # only an interrupt is better off: it need not kill the kernel where a cell's time is over
+        # only interrupts differ: at the end of a cell's time, one need not kill the kernel
         lesson.run(f'{SILENT}\nrun(Talker)')
         cell = lesson.send("node = Silent(); print('begun'); rclpy.spin(node)")
         lesson.wait_for(lambda: 'begun' in cell.stdout)

@@ -17,7 +17,7 @@ def nothing_runs(request):
     yield from stop_nodes_after(request)
 
 
-def test_the_same_cell_again_replaces_the_node(lesson):
+def test_running_a_cell_again_replaces_its_node(lesson):
     for _ in range(20):
         cell = lesson.run('talker = run(Talker)')
         assert cell.error is None
@@ -29,7 +29,7 @@ def test_the_same_cell_again_replaces_the_node(lesson):
     assert lesson.value('alive(talker)') == 'True'
 
 
-def test_a_class_defined_anew_replaces_the_old_one(lesson):
+def test_a_node_of_a_redefined_class_replaces_the_old_node(lesson):
     lesson.run("old = run(Talker, 'old')")
     lesson.run('class Talker(Talker): pass')
     assert lesson.run("talker = run(Talker, 'new')").error is None
@@ -37,7 +37,7 @@ def test_a_class_defined_anew_replaces_the_old_one(lesson):
     assert lesson.value('talker.text, alive(talker)') == "('new', True)"
 
 
-def test_another_class_with_the_same_node_name_replaces_it_too(lesson):
+def test_a_node_of_another_class_with_the_same_name_replaces_the_old_node(lesson):
     lesson.run('run(Talker)')
     lesson.run('class Louder(Talker): pass')
     assert lesson.run('louder = run(Louder)').error is None
@@ -59,7 +59,7 @@ def test_two_nodes_of_one_class_run_under_two_keys(lesson):
     assert "no node runs as 'r'" in lesson.run("stop('r')").stdout
 
 
-def test_rclpy_shut_down_by_hand(lesson):
+def test_run_works_again_after_rclpy_was_shut_down_by_hand(lesson):
     cell = lesson.run('run(Talker)')
     lesson.run('rclpy.shutdown()')
     assert lesson.wait_for(lambda: cell.panel.startswith('Talker: rclpy was shut down'))
@@ -71,7 +71,7 @@ def test_rclpy_shut_down_by_hand(lesson):
     assert lesson.value('publishers(), alive(talker)') == "(['talker'], True)"
 
 
-def test_rclpy_initialised_in_another_domain_is_said(lesson):
+def test_run_warns_if_rclpy_is_initialised_in_another_domain(lesson):
     lesson.run('reset()')
     lesson.run('rclpy.init(domain_id=231)')
     cell = lesson.run('talker = run(Talker)')
@@ -81,18 +81,18 @@ def test_rclpy_initialised_in_another_domain_is_said(lesson):
     assert lesson.run('talker = run(Talker)').stdout == ''
 
 
-def test_rclpy_initialised_and_left_by_the_student(lesson):
+def test_run_ignores_a_node_left_on_a_context_that_was_shut_down(lesson):
     lesson.run('reset()')
     lesson.run("rclpy.init(); own = Talker('by hand')")
-    # a node that was left on a context shut down is no neighbour: it is buried
+    # a node left on a context that was shut down is not a neighbour: it is destroyed
     lesson.run('rclpy.shutdown()')
     lesson.run('rclpy.init()')
     assert lesson.run('talker = run(Talker)').error is None
     assert lesson.value('publishers(), alive(talker)') == "(['talker'], True)"
 
 
-def test_a_node_of_that_name_in_a_thread_and_context_of_its_own(lesson):
-    # long acquainted with the domain: nothing waits for the graph any more
+def test_run_starts_no_node_whose_name_runs_in_another_context(lesson):
+    # the domain has been in use for a while: nothing waits for the graph any more
     lesson.run('import time; run(Talker); stop(); time.sleep(0.5)')
     cell = lesson.run("""import threading
 context = rclpy.Context(); context.init()
@@ -112,7 +112,7 @@ talker = run(Talker)""")
     assert lesson.value('alive(talker)') == 'True'
 
 
-def test_a_node_of_that_name_in_another_process(lesson):
+def test_run_starts_no_node_whose_name_runs_in_another_process(lesson):
     lesson.run('reset()')
     lesson.run('''import subprocess, sys
 other = subprocess.Popen([sys.executable, '-c', """
@@ -142,7 +142,7 @@ def test_log_lines_stay_with_the_cell_that_started_the_node(lesson):
         self.get_logger().warning(f'tick {self.count}')
         print('printed', self.count)""")
     a = lesson.run('chatty = run(Chatty)')
-    # what the constructor said is there when the cell ends, always the same
+    # what the constructor logged is there when the cell ends, always the same
     first = a.displays[0]['data']['text/plain']
     assert first == 'Chatty: running\n[INFO] [talker]: made with x\nin two lines'
     b = lesson.run('assert alive(chatty)')
@@ -155,14 +155,14 @@ def test_log_lines_stay_with_the_cell_that_started_the_node(lesson):
     assert '&lt;b&gt;bold' in a.displays[-1]['data']['text/html']
 
 
-def test_what_others_write_to_stdout_goes_to_the_cell_that_runs(lesson):
+def test_other_output_to_stdout_goes_to_the_cell_that_runs(lesson):
     lesson.run('run(Talker)')
     cell = lesson.run("""import os, subprocess
 os.system('echo from a shell; printf "no newline é"')
 subprocess.run(['echo', 'from a program'])
 rclpy.logging.get_logger('somebody').info('log line\\nof two')
 print('from Python')""")
-    # print writes the end of its line by itself: another's line may come in between
+    # print writes the end of its line separately: a line of another writer may come in between
     for text in ('from a shell\n', 'no newline é', 'from a program\n', 'from Python'):
         assert lesson.wait_for(lambda text=text: text in cell.stdout), text
     assert lesson.wait_for(lambda: '[somebody]: log line\nof two\n' in cell.stdout)
@@ -187,7 +187,7 @@ def test_an_exception_in_a_callback_is_shown_and_the_node_goes_on(lesson):
 
 
 @pytest.mark.slow
-def test_a_flood_is_bounded(lesson):
+def test_a_flood_of_log_lines_is_bounded(lesson):
     lesson.run("""class Flood(Talker):
     def tick(self):
         super().tick()
@@ -214,7 +214,7 @@ def test_warnings_of_an_incompatible_qos_are_shown(lesson):
     assert lesson.wait_for(lambda: cell.panel.count('incompatible QoS') == 2)
 
 
-def test_a_constructor_that_raises_leaves_nothing_and_says_why(lesson):
+def test_a_constructor_that_raises_leaves_no_node_and_shows_its_error(lesson):
     lesson.run('run(Talker)')
     lesson.run("""class Broken(Talker):
     def __init__(self):
@@ -231,7 +231,7 @@ def test_a_constructor_that_raises_leaves_nothing_and_says_why(lesson):
 
 
 @pytest.mark.parametrize('thing', ['Talker.tick', 'String', '"Talker"', 'rclpy.create_node("t")'])
-def test_what_cannot_run_is_refused_in_two_lines(lesson, thing):
+def test_an_object_that_is_not_a_node_class_is_refused_in_two_lines(lesson, thing):
     lesson.run('if not rclpy.ok(): rclpy.init()')
     error = lesson.run(f'run({thing})').error
     assert error.startswith('NotRunnable: run expects ')
@@ -251,7 +251,7 @@ def test_a_second_init_is_explained_in_a_sentence(lesson):
     assert lesson.run('c = rclpy.Context(); rclpy.init(context=c); c.shutdown()').error is None
 
 
-def test_a_node_that_was_stopped_and_said_nothing_leaves_nothing_to_read(lesson):
+def test_the_panel_of_a_stopped_node_that_logged_nothing_is_empty(lesson):
     lesson.run(SILENT)
     cell = lesson.run('run(Silent)')
     assert cell.panel == 'Silent: running'
@@ -263,7 +263,7 @@ def test_a_node_that_was_stopped_and_said_nothing_leaves_nothing_to_read(lesson)
     assert lesson.wait_for(lambda: talker.panel.startswith('Talker: stopped\n[INFO]'))
 
 
-def test_a_node_that_spins_itself_is_left_to_it_and_stopped_all_the_same(lesson):
+def test_a_node_that_spins_itself_runs_and_can_be_stopped(lesson):
     lesson.run("""import threading
 class Selfish(Talker):
     def __init__(self):
@@ -279,7 +279,7 @@ class Selfish(Talker):
 
 
 @pytest.mark.parametrize('body', ['time.sleep(0.02)', 'self.publisher.publish(String())'])
-def test_a_callback_that_does_not_return_can_be_replaced(lesson, body):
+def test_a_node_whose_callback_does_not_return_can_be_replaced(lesson, body):
     lesson.run(f"""import time
 class Stuck(Talker):
     def tick(self):
@@ -293,7 +293,7 @@ class Stuck(Talker):
     assert lesson.value('publishers(), alive(talker), frozen(stuck)') == "(['talker'], True, True)"
 
 
-def test_a_callback_that_stops_its_own_node(lesson):
+def test_a_callback_can_stop_its_own_node(lesson):
     lesson.run("""class Quitter(Talker):
     def tick(self):
         stop(self)""")
@@ -336,7 +336,7 @@ class Mover(Talker):
     assert lesson.value('[n for n in publishers("/joints")]') == '[]'
 
 
-def test_a_picture_comes_with_its_words_where_a_plain_png_would_lose_them(lesson):
+def test_a_picture_is_shown_as_html_with_its_description_as_alt_text(lesson):
     [shown] = lesson.run('from my_robot_basics.live import show_arm; show_arm(30, 45)').displays
     png, text = shown['data']['image/png'].replace('\n', ''), shown['data']['text/plain']
     assert 'θ1 = 30.0°' in text

@@ -118,7 +118,7 @@ class Witness:
 
 
 @pytest.mark.slow
-def test_in_a_script_the_node_runs_and_nothing_is_left(tmp_path):
+def test_a_script_runs_nodes_and_ends_cleanly(tmp_path):
     script = tmp_path / 'script.py'
     script.write_text(
         TALKER + "faulty = type('Faulty', (Talker,), {'tick': lambda self: 1 / 0})\n"

@@ -1,4 +1,4 @@
-"""A lesson tells of itself, and a terminal that names no domain joins the latest one."""
+"""A running lesson is announced, and a terminal that names no domain joins the latest one."""
 
 import contextlib
 import os
@@ -49,8 +49,8 @@ def kernel(folder, name, **environment):
         manager.shutdown_kernel(now=True)
 
 
-def told(folder):
-    """Those of this test: other kernels of this machine may run lessons, too."""
+def running_lessons_in(folder):
+    """The running lessons of this test: other kernels of this machine may run lessons, too."""
     names = {path.name for path in folder.iterdir()}
     return [lesson for lesson in lessons.running() if lesson.name in names]
 
@@ -59,16 +59,16 @@ def test_each_lesson_prints_the_line_with_which_a_terminal_joins_it(tmp_path):
     with kernel(tmp_path, 'first') as first_cell, kernel(tmp_path, 'second') as second_cell:
         for name, run_cell in ('first', first_cell), ('second', second_cell):
             said = run_cell(TALK.format(name=name))
-            lesson = told(tmp_path)[-1]
+            lesson = running_lessons_in(tmp_path)[-1]
             assert lesson.name == name
             line = f'join this lesson: export ROS_DOMAIN_ID={lesson.domain_id}\n'
             assert said.startswith(f'In a terminal, {line}')
             listed = ros2('topic', 'list', ROS_DOMAIN_ID=str(lesson.domain_id))
             assert listed.err == ''
             assert {'/first', '/second'} & set(listed.out.split()) == {f'/{name}'}
-        assert [lesson.name for lesson in told(tmp_path)] == ['first', 'second']
+        assert [lesson.name for lesson in running_lessons_in(tmp_path)] == ['first', 'second']
     # a kernel that is killed runs no more
-    assert told(tmp_path) == []
+    assert running_lessons_in(tmp_path) == []
 
 
 def test_a_terminal_joins_the_lesson_that_started_last_and_says_so(tmp_path):
@@ -81,35 +81,35 @@ def test_a_terminal_joins_the_lesson_that_started_last_and_says_so(tmp_path):
             listed = ros2('topic', 'list', **PLAIN_TERMINAL)
             if ' latest, ' in listed.err:
                 break
-        (lesson,) = told(tmp_path)
+        (lesson,) = running_lessons_in(tmp_path)
         assert listed.err == (
             f'joined the lesson latest, which started last: ROS_DOMAIN_ID={lesson.domain_id}\n'
         )
         assert '/latest' in listed.out.split()
 
 
-def test_a_verb_that_needs_no_graph_does_not_speak_of_domains(tmp_path):
+def test_a_ros2_verb_that_needs_no_graph_prints_no_message_about_domains(tmp_path):
     with kernel(tmp_path, 'some_lesson') as run_cell:
         run_cell(TALK.format(name='silent'))
-        assert told(tmp_path)
+        assert running_lessons_in(tmp_path)
         shown = ros2('interface', 'show', 'std_msgs/msg/Int32', **PLAIN_TERMINAL)
     assert (shown.out.splitlines()[-1], shown.err) == ('int32 data', '')
 
 
-def test_a_notebook_is_called_by_the_name_that_jupyterlab_tells(tmp_path):
+def test_a_lesson_has_the_notebook_name_that_jupyterlab_gives(tmp_path):
     path = str(tmp_path / 'Mein Übungsblatt 3.ipynb')
     with kernel(tmp_path, 'elsewhere', JPY_SESSION_NAME=path) as run_cell:
         run_cell(TALK.format(name='named'))
         assert 'Mein__bungsblatt_3' in [lesson.name for lesson in lessons.running()]
 
 
-def test_no_lesson_is_running_in_a_grading_room(tmp_path):
+def test_a_grading_room_announces_no_lesson(tmp_path):
     with kernel(tmp_path, 'submission', MY_ROBOT_BASICS_ROOM='student') as run_cell:
         assert 'ROS_DOMAIN_ID=' in run_cell(TALK.format(name='graded'))
-        assert told(tmp_path) == []
+        assert running_lessons_in(tmp_path) == []
 
 
-def test_a_process_that_is_no_kernel_is_no_lesson():
+def test_a_process_that_is_not_a_kernel_is_not_listed_as_a_lesson():
     code = (
         'import os; from my_robot_basics.session import classroom, lessons; classroom.enter()\n'
         'print([lesson for lesson in lessons.running() if lesson.pid == os.getpid()])'
@@ -146,19 +146,19 @@ def test_lessons_are_sorted_by_their_start(sockets):
     assert late == lessons.RunningLesson(2000, 3, os.getpid(), 'late')
 
 
-def test_lessons_of_other_users_and_nonsense_are_left_out(sockets, monkeypatch):
+def test_lessons_of_other_users_and_malformed_entries_are_left_out(sockets, monkeypatch):
     other = os.getuid() + 1
     monkeypatch.setattr(os, 'getuid', lambda: other)
     sockets(f'3.2000.{os.getpid()}.theirs', '3.2000.x.y')
     assert lessons.running() == []
 
 
-def test_without_the_table_no_lesson_is_known(tmp_path, monkeypatch):
+def test_no_lesson_is_listed_if_the_socket_table_is_missing(tmp_path, monkeypatch):
     monkeypatch.setattr(lessons, 'SOCKETS', tmp_path / 'nothing')
     assert lessons.running() == []
 
 
-def test_the_longest_name_fits(monkeypatch, tmp_path):
+def test_the_longest_lesson_name_fits_into_a_socket_address(monkeypatch, tmp_path):
     monkeypatch.setenv('JPY_SESSION_NAME', f'{"x" * 200}.ipynb')
     monkeypatch.setattr(time, 'time_ns', lambda: 2**64)
     monkeypatch.setattr(os, 'getpid', lambda: 2**22)

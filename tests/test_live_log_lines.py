@@ -38,7 +38,7 @@ def split(*pieces, give_up=True):
         ([f'{A}a\r\nb{END}\n'], ['a\r\nb'], ''),
         # not wanted: forwarded without the separator
         ([f'{B}other{END}\n{A}mine{END}\n'], ['mine'], f'{B}other\n'),
-        # logging began before anybody asked for the separator
+        # logging began before the separator was configured
         ([f'{A}one\n'], ['one'], ''),
         ([f'{A}one\n{A}two\n{B}three\nplain\n'], ['one', 'two'], f'{B}three\nplain\n'),
         # everything else passes, byte for byte
@@ -49,11 +49,11 @@ def split(*pieces, give_up=True):
         (['', '\n\n'], [], '\n\n'),
     ],
 )
-def test_who_gets_what(pieces, texts, forwarded):
+def test_log_records_of_a_node_are_taken_and_other_output_is_forwarded(pieces, texts, forwarded):
     assert split(*pieces) == (texts, forwarded)
 
 
-def test_a_childs_logger_and_severity_are_told():
+def test_a_log_record_has_severity_and_child_logger():
     records = []
     splitter = Splitter(take=lambda r: not records.append(r), forward=pytest.fail)
     splitter.feed(f'[ERROR] [1.0] [arm.left]: ouch{END}\n'.encode())

@@ -31,7 +31,7 @@ def test_nodes_are_found_alive_and_dead():
 
 
 @pytest.mark.slow
-def test_a_thread_that_builds_tuples_is_not_disturbed():
+def test_the_search_for_nodes_does_not_disturb_a_thread_that_builds_tuples():
     errors = []
     looked = threading.Event()
 
@@ -65,7 +65,7 @@ time.sleep(60)
 
 
 @pytest.mark.starts
-def test_who_was_killed_is_no_neighbour_any_more():
+def test_a_killed_node_is_not_a_neighbour():
     """It does not announce its end, and stays on the graph until its lease expires."""
     neighbours = Neighbours()
     neighbours.meet()
@@ -81,9 +81,9 @@ def test_who_was_killed_is_no_neighbour_any_more():
 
 
 @pytest.mark.starts
-def test_a_name_that_stays_without_a_node_is_no_neighbour(monkeypatch):
-    """As where the last message of a participant is handled after its end: once, 7 tests of
-    `run` failed because a node of another process, long gone, was said to run.
+def test_a_node_name_left_on_the_graph_without_a_node_is_not_a_neighbour(monkeypatch):
+    """This happens if the last message of a participant is handled after its end: once, 7 tests of
+    `run` failed because a node of another process, long gone, was reported to run.
     """
     names = Node.get_node_names_and_namespaces
     monkeypatch.setattr(

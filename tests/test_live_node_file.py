@@ -32,7 +32,7 @@ def test_a_cell_becomes_a_module_of_the_package(modules, capsys):
     assert capsys.readouterr().out == written
 
 
-def test_what_was_edited_in_the_file_is_kept(folder, modules, capsys):
+def test_an_edited_file_is_moved_aside_before_it_is_overwritten(folder, modules, capsys):
     for number in (1, 2):
         (modules / 'greeter.py').write_text(f'edited {number}')
         node_file.write_node('greeter.py', NODE)
@@ -43,14 +43,14 @@ def test_what_was_edited_in_the_file_is_kept(folder, modules, capsys):
 
 
 @pytest.mark.parametrize('name', ['', 'greeter', 'my node.py', '../greeter.py', '/tmp/greeter.py'])
-def test_what_is_no_name_of_a_module_is_refused(modules, name):
+def test_an_invalid_module_name_is_refused(modules, name):
     before = sorted(modules.iterdir())
     with pytest.raises(node_file.NotWritten, match='expected a name such as'):
         node_file.write_node(name, NODE)
     assert sorted(modules.iterdir()) == before
 
 
-def test_without_a_workspace_it_names_the_cell_to_run(folder):
+def test_the_error_without_a_workspace_names_the_cell_to_run(folder):
     with pytest.raises(node_file.NotWritten, match=r'run the cell with make_workspace\(\) first'):
         node_file.write_node('greeter.py', NODE)
 
@@ -58,7 +58,7 @@ def test_without_a_workspace_it_names_the_cell_to_run(folder):
 OPEN = 'class NoSuchClass: ...\n'
 
 
-def test_what_is_not_answered_is_told_and_writes_nothing(modules, capsys):
+def test_a_missing_class_is_reported_and_the_file_is_not_written(modules, capsys):
     node_file.write_node('own.py', OPEN)
     said = capsys.readouterr().out
     assert said.startswith('not written: there is no class NoSuchClass yet: run the cell in which')
@@ -77,14 +77,14 @@ def test_a_class_of_the_notebook_is_copied_and_the_file_is_shown(modules, capsys
     assert shown == '\nclass NoSuchClass: pass\n'
 
 
-def test_what_is_no_program_changes_nothing(modules):
+def test_a_cell_that_is_not_valid_python_does_not_change_the_file(modules):
     (modules / 'own.py').write_text('mine')
     with pytest.raises(node_file.program.NotAProgram, match='not valid Python'):
         node_file.write_node('own.py', 'def main(:\n')
     assert (modules / 'own.py').read_text() == 'mine'
 
 
-def test_the_tree_shows_what_is_there_and_which_files_are_the_students(folder, modules, capsys):
+def test_the_workspace_tree_shows_folders_and_the_students_files(folder, modules, capsys):
     node_file.write_node('greeter.py', NODE)
     (folder / 'build').mkdir()
     capsys.readouterr()

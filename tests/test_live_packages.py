@@ -1,4 +1,4 @@
-"""A package beside the notebook: built by colcon, run as processes, and told what is wrong."""
+"""A package beside the notebook: it is built by colcon and run, and its faults are reported."""
 
 import os
 import signal
@@ -47,7 +47,7 @@ def tree(folder):
 # --- made ----------------------------------------------------------------------------------------
 
 
-def test_a_skeleton_is_made_once(folder, capsys):
+def test_a_package_skeleton_is_made_once(folder, capsys):
     live.make_package(PACKAGE, node_name='greet', dependencies=['rclpy'])
     assert printed(capsys).startswith('made greeter/ beside the notebook: package.xml setup.py')
     assert '<depend>rclpy</depend>' in (folder / PACKAGE / 'package.xml').read_text()
@@ -58,7 +58,7 @@ def test_a_skeleton_is_made_once(folder, capsys):
 
 
 @pytest.mark.parametrize('name', ['../x', 'Greeter', '9', 'a-b', ''])
-def test_a_name_that_is_none_is_refused(name):
+def test_an_invalid_package_name_is_refused(name):
     for do in live.make_package, live.build_package:
         with pytest.raises(NotRunnable, match='expected the name of a package'):
             do(name)
@@ -92,21 +92,21 @@ def changed(folder, changes):
 
 
 @pytest.mark.parametrize(('changes', 'words'), WRONG.values(), ids=list(WRONG))
-def test_what_is_wrong_is_seen_before_anything_is_built(folder, capsys, changes, words):
+def test_a_fault_of_a_package_is_reported_and_nothing_is_built(folder, capsys, changes, words):
     changed(make_package(folder), changes)
     live.build_package(PACKAGE)
     assert words in printed(capsys)
     assert not (folder / 'ros_ws' / 'install').exists()
 
 
-def test_a_folder_that_is_not_there_is_asked_for(capsys):
+def test_a_missing_package_folder_is_reported(capsys):
     live.build_package(PACKAGE)
     assert printed(capsys).startswith('there is no folder greeter/ beside this notebook: make it')
 
 
 @pytest.mark.starts
 def test_a_package_is_built_run_and_ended(folder, capsys):
-    """One build, and all that comes of a right package."""
+    """One build of a correct package, and everything that can be done with the result."""
     make_package(folder, build__x='not mine', **{'greeter/more.py': 'import sensor_msgs.msg'})
     before = tree(folder / PACKAGE)
     live.build_package(PACKAGE)
@@ -168,7 +168,9 @@ def main():
         ('lambda *_: 1 / 0', 'with ZeroDivisionError', 'exit code 1, ZeroDivisionError: div'),
     ],
 )
-def test_an_end_that_is_not_clean_is_told(folder, capsys, monkeypatch, handler, words, check):
+def test_an_unclean_end_of_an_executable_is_reported(
+    folder, capsys, monkeypatch, handler, words, check
+):
     monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
     monkeypatch.setattr('my_robot_basics.checks.package_processes.END_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
@@ -203,7 +205,7 @@ rclpy.spin(Node('greeter'))
 
 
 @pytest.mark.starts
-def test_a_node_that_outlives_its_program_is_told(folder, monkeypatch):
+def test_a_node_that_outlives_its_executable_is_reported(folder, monkeypatch):
     monkeypatch.setattr('my_robot_basics.checks.package_processes.GONE_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
     script.parent.mkdir(parents=True)
@@ -221,7 +223,7 @@ def test_a_node_that_outlives_its_program_is_told(folder, monkeypatch):
 
 
 @pytest.mark.starts
-def test_one_that_leaves_its_process_group_is_ended_too(folder, monkeypatch):
+def test_an_executable_that_leaves_its_process_group_is_ended(folder, monkeypatch):
     monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
     script.parent.mkdir(parents=True)
@@ -237,7 +239,7 @@ def test_one_that_leaves_its_process_group_is_ended_too(folder, monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_an_executable_that_ends_at_once_says_why(folder, capsys):
+def test_the_error_of_an_executable_that_ends_at_once_is_reported(folder, capsys):
     make_package(folder, node='def main():\n    import no_such_module\n')
     live.build_package(PACKAGE)
     live.run_executable(PACKAGE, 'greet')
@@ -269,7 +271,7 @@ def test_an_executable_that_ends_at_once_says_why(folder, capsys):
         ),
     ],
 )
-def test_what_colcon_and_the_result_say_is_told_with_what_to_do(folder, capsys, changes, words):
+def test_a_failed_or_incomplete_build_is_reported_with_a_remedy(folder, capsys, changes, words):
     changed(make_package(folder), changes)
     live.build_package(PACKAGE)
     assert words in printed(capsys)
@@ -278,7 +280,7 @@ def test_what_colcon_and_the_result_say_is_told_with_what_to_do(folder, capsys, 
 
 
 @pytest.mark.starts
-def test_an_interrupt_ends_the_build_with_all_that_it_started(folder, monkeypatch):
+def test_an_interrupt_ends_a_build_and_the_processes_that_it_started(folder, monkeypatch):
     sleeper = 'import os, time\nopen("{}", "w").write(str(os.getpid()))\ntime.sleep(600)\n'
     pid = folder / 'pid'
     make_package(folder, **{'setup.py': sleeper.format(pid)})
@@ -310,7 +312,7 @@ LEFT_RUNNING = {
 @pytest.mark.starts
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize('what', LEFT_RUNNING.values(), ids=LEFT_RUNNING)
-def test_what_setup_py_leaves_running_holds_no_build_up(folder, capsys, what):
+def test_a_process_that_setup_py_leaves_running_does_not_hold_up_a_build(folder, capsys, what):
     """A child in a session of its own, with colcon's pipe."""
     leaves = (
         'import os, time\n'
@@ -330,7 +332,7 @@ def test_what_setup_py_leaves_running_holds_no_build_up(folder, capsys, what):
 
 
 @pytest.mark.starts
-def test_what_a_check_asks_of_nothing_is_answered(folder):
+def test_a_check_is_answered_if_nothing_was_built_or_started(folder):
     with pytest.raises(CheckFailed, match='expected greeter to be built, saw no build: run the'):
         package_of(PACKAGE).expect_built()
     told = packages.answer_check(PACKAGE, 'state', 99)

@@ -35,7 +35,7 @@ class MyNode(Node):
 
 @pytest.fixture
 def notebook(monkeypatch):
-    """A function that runs a cell as a notebook does; what it makes goes after the test."""
+    """A function that runs a cell as a notebook does; its names are removed after the test."""
     main = sys.modules['__main__']
     made = []
 
@@ -85,7 +85,7 @@ def test_the_class_that_was_run_last_counts_with_its_decorators(notebook):
     assert '2.0' not in filled
 
 
-def test_names_of_other_cells_are_told_with_what_to_add(notebook):
+def test_names_of_other_cells_are_reported_with_the_lines_to_add(notebook):
     notebook('import numpy as np\nfrom sensor_msgs.msg import JointState as State\nLIMIT = 90\n')
     names = 'State, LIMIT, display, nowhere, np'
     notebook(ANSWER.replace('np.pi', names))
@@ -100,7 +100,7 @@ def test_names_of_other_cells_are_told_with_what_to_add(notebook):
     ]
 
 
-def test_they_are_told_in_the_language_of_the_notebook_and_keep_their_indent(
+def test_missing_names_are_reported_indented_in_the_language_of_the_notebook(
     notebook, monkeypatch
 ):
     monkeypatch.setenv('JPY_SESSION_NAME', 'zh_CN/03_publisher/03_publisher.ipynb')
@@ -131,7 +131,7 @@ def test_they_are_told_in_the_language_of_the_notebook_and_keep_their_indent(
         'from builtin_interfaces.msg import Time',
     ],
 )
-def test_an_import_line_gives_the_thing_itself(line):
+def test_a_proposed_import_line_imports_the_same_object(line):
     names, again = {}, {}
     exec(line, names)
     name = ast.parse(line).body[0].names[0]
@@ -143,44 +143,44 @@ def test_an_import_line_gives_the_thing_itself(line):
         assert proposed == line
 
 
-def test_what_no_import_gives_has_no_import_line(notebook):
+def test_an_object_that_cannot_be_imported_has_no_import_line(notebook):
     notebook(ANSWER)
     for thing in (90, [1], sys.modules['__main__'].MyNode, lambda: None):
         assert program.import_line('thing', thing) == ''
 
 
-def test_without_the_class_it_names_the_cell_to_run():
+def test_the_error_about_a_missing_class_says_which_cell_to_run():
     said = 'there is no class MyNode yet: run the cell in which you write it, then'
     with pytest.raises(program.NotAnswered, match=said):
         program.fill_in(CELL)
 
 
-def test_a_class_from_elsewhere_is_not_taken(notebook):
+def test_a_class_of_another_module_is_not_copied(notebook):
     notebook('from rclpy.node import Node as MyNode\n')
     assert 'MyNode is not a class of this notebook' in ' '.join(refusal())
 
 
-def test_the_released_answer_does_nothing_yet(notebook):
+def test_the_released_answer_is_reported_as_doing_nothing_yet(notebook):
     released = {cell.id: cell.source for cell in read('notebooks', '03_publisher').cells}
     notebook(released['five_hz'])
     with pytest.raises(program.NotAnswered, match='KinematicsPublisher does nothing yet: answer'):
         program.fill_in(released['own_file'].partition('\n')[2])
 
 
-def test_a_class_may_leave_all_to_what_it_derives_from(notebook):
+def test_a_class_may_leave_everything_to_its_base_class(notebook):
     notebook(f'import numpy as np\n{ANSWER}\nBase = MyNode\n')
     notebook('class MyNode(__import__("__main__").Base):\n    def own(self):\n        pass\n')
     assert 'def own(self)' in program.fill_in(CELL.replace('rclpy.node', 'x'))
 
 
-def test_a_class_whose_text_is_nowhere_is_asked_for(notebook):
+def test_a_class_without_source_text_is_refused(notebook):
     notebook(ANSWER)
     for name in [n for n in linecache.cache if n.startswith('<cell')]:
         linecache.cache[name] = 0, None, [], name
     assert 'put the class itself' in ' '.join(refusal())
 
 
-def test_what_is_no_python_is_told_with_its_line_in_the_cell():
+def test_invalid_python_is_reported_with_the_line_of_the_cell():
     [line] = refusal('import rclpy\n\ndef main(:\n')
     # the magic is line 1
     assert 'not valid Python (line 4: ' in line

@@ -1,4 +1,4 @@
-"""Which offers match which requests: the picture says what rclpy says."""
+"""Which QoS offers match which requests: the picture agrees with rclpy."""
 
 from io import BytesIO
 from itertools import product
@@ -31,7 +31,7 @@ def test_a_pair_matches_where_rclpy_finds_no_error(policy, offered, requested):
     assert qos_offers.matches(qos_offers.POLICIES[policy], offered, requested) == compatible
 
 
-def test_every_pair_is_told_in_words(monkeypatch):
+def test_every_qos_pair_is_listed_in_words(monkeypatch):
     shown = []
     monkeypatch.setattr(notebook.Display, 'show', lambda self, bundle: shown.append(bundle))
     show_offers()
@@ -42,7 +42,7 @@ def test_every_pair_is_told_in_words(monkeypatch):
     assert bundle['text/plain'].count(' no') == 2
 
 
-def test_it_needs_no_more_than_the_width_of_a_phone():
+def test_the_picture_of_qos_offers_fits_a_phone_and_is_opaque():
     picture = matplotlib.image.imread(BytesIO(qos_offers.draw()))
     assert picture.shape[1] <= 400
     # opaque, and white at its border: as readable on a dark page

@@ -18,7 +18,7 @@ def witness():
     stop()
 
 
-def test_each_pair_comes_out_as_the_middleware_foretells(witness):
+def test_the_outcome_of_each_pair_agrees_with_qos_check_compatible(witness):
     outcome = measure_pairs(PROFILES)
     assert list(outcome) == [(offered, asked) for offered in PROFILES for asked in PROFILES]
     for (offered, asked), came_of_it in outcome.items():
@@ -26,7 +26,7 @@ def test_each_pair_comes_out_as_the_middleware_foretells(witness):
         assert came_of_it == ('RELIABILITY' if foretold == QoSCompatibility.ERROR else 'yes')
 
 
-def test_nothing_stays_on_the_graph_and_nothing_is_logged(witness, capfd):
+def test_measuring_pairs_leaves_nothing_on_the_graph_and_logs_no_warning(witness, capfd):
     assert measure_pairs(PROFILES) == measure_pairs(PROFILES)
     wait_until(lambda: not [n for n in witness.get_node_names() if 'pair' in n])
     wait_until(lambda: not [n for n, _ in witness.get_topic_names_and_types() if 'pair' in n])
@@ -34,7 +34,7 @@ def test_nothing_stays_on_the_graph_and_nothing_is_logged(witness, capfd):
     assert 'incompatible' not in logged.out + logged.err
 
 
-def test_a_pair_that_tells_nothing_is_no_outcome(monkeypatch):
+def test_a_pair_without_an_outcome_raises_a_timeout(monkeypatch):
     monkeypatch.setattr(qos_pairs, 'TIMEOUT_SEC', 0.0)
     with pytest.raises(WaitTimeout):
         measure_pairs(PROFILES)

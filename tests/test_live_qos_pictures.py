@@ -1,4 +1,4 @@
-"""Which profiles match, and what was lost: the pictures, and what they say in words."""
+"""Pictures of matching QoS profiles and of lost messages, and their descriptions in words."""
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def test_a_matrix_says_yes_or_no_in_each_cell_and_in_words(shown):
     ]
 
 
-def test_each_outcome_stands_where_its_pair_says():
+def test_each_outcome_is_drawn_in_the_row_and_column_of_its_pair():
     names = ['RELIABLE VOLATILE', 'none']
     figure = qos_pictures._draw_matrix(OUTCOMES, offers=names, requests=names, title='t')
     [axes] = figure.axes
@@ -54,7 +54,7 @@ def test_each_outcome_stands_where_its_pair_says():
     assert 'requests' in axes.get_xlabel()
 
 
-def test_a_matrix_with_a_hole_is_refused():
+def test_a_matrix_with_a_missing_outcome_is_refused():
     holed = {pair: outcome for pair, outcome in OUTCOMES.items() if pair != ('none', 'none')}
     with pytest.raises(ValueError, match=r"saw none for \('none', 'none'\)"):
         show_qos_matrix(holed)

@@ -1,4 +1,4 @@
-"""The way of a message through two queues: a picture, and what it says in words."""
+"""The way of a message through two queues: a picture, and its description in words."""
 
 from io import BytesIO
 
@@ -6,7 +6,7 @@ import matplotlib.image
 from my_robot_basics.live import notebook, queue_picture, show_queues
 
 
-def test_the_way_is_told_in_its_order(monkeypatch):
+def test_the_way_of_a_message_through_the_queues_is_described_in_order(monkeypatch):
     shown = []
     monkeypatch.setattr(notebook.Display, 'show', lambda self, bundle: shown.append(bundle))
     show_queues()
@@ -18,7 +18,7 @@ def test_the_way_is_told_in_its_order(monkeypatch):
     assert way[-2:] == ['the executor takes it', 'callback']
 
 
-def test_it_needs_no_more_than_the_width_of_a_phone():
+def test_the_picture_of_the_queues_fits_a_phone_and_is_opaque():
     picture = matplotlib.image.imread(BytesIO(queue_picture.draw()))
     assert picture.shape[1] <= 400
     # opaque, and white at its border: as readable on a dark page

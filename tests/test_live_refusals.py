@@ -1,4 +1,4 @@
-"""What `run` says if it cannot run something, and that nothing is left of it."""
+"""The errors of `run` for an object that it cannot run, of which nothing is left behind."""
 
 import math
 from functools import cached_property
@@ -36,18 +36,18 @@ class Returns(Node):
 
 
 @pytest.mark.parametrize('NodeClass', [Late, Never])
-def test_a_node_that_was_never_made_is_told_how_to_begin(NodeClass):
+def test_a_constructor_that_does_not_begin_with_super_init_is_reported(NodeClass):
     with pytest.raises(NotRunnable, match=rf'of {NodeClass.__name__} to begin with super\(\)\._'):
         run(NodeClass)
 
 
-def test_a_mistake_of_another_kind_is_shown_as_it_is():
+def test_another_error_in_a_constructor_is_raised_unchanged():
     with pytest.raises(AttributeError, match='create_publsher'):
         run(OwnMistake)
     stop()
 
 
-def test_a_constructor_that_returns_something_raises_as_it_does_in_a_program():
+def test_a_constructor_that_returns_a_value_raises_the_error_of_python():
     with pytest.raises(TypeError, match=r"__init__\(\) should return None, not 'Returns'"):
         run(Returns)
     assert not any(isinstance(node, Returns) for node in nodes_here())
@@ -62,7 +62,7 @@ def test_a_constructor_that_returns_something_raises_as_it_does_in_a_program():
         (dict, "saw <class 'dict'>"),
     ],
 )
-def test_what_is_no_node_class_is_named(thing, words):
+def test_an_object_that_is_not_a_node_class_is_named_in_the_error(thing, words):
     with pytest.raises(NotRunnable) as refused:
         run(thing)
     assert words in str(refused.value)
@@ -97,14 +97,14 @@ class Static(Node):
 @pytest.mark.parametrize(
     ('NodeClass', 'name'), [(Handles, 'handle'), (MixedIn, 'timers'), (Static, 'guards')]
 )
-def test_a_method_in_place_of_a_property_of_node_is_named(NodeClass, name):
+def test_a_method_that_hides_a_property_of_node_is_named_in_the_error(NodeClass, name):
     words = f'expected {NodeClass.__name__} to have no method `{name}`, saw one: .* another name'
     with pytest.raises(NotRunnable, match=words):
         run(NodeClass)
 
 
 class HalfMade(Node):
-    """Node's own constructor calls this one, and so raises when there is half a node."""
+    """Node's own constructor calls `get_parameter`, and so raises when half of the node exists."""
 
     def __init__(self):
         super().__init__('half_made')
@@ -114,14 +114,14 @@ class HalfMade(Node):
 
 
 @pytest.mark.starts
-def test_what_rclpys_own_constructor_raised_is_told():
+def test_an_error_from_the_constructor_of_rclpys_node_is_raised_unchanged():
     with pytest.raises(TypeError, match=r'HalfMade.get_parameter\(\) takes 1 positional argument'):
         run(HalfMade)
     stop()
 
 
 class Allowed(Node):
-    """It spins: with a name that executors leave alone, a property, a method that Node has."""
+    """Redefines names of Node, as an attribute, a property and a method, and can still be spun."""
 
     def __init__(self):
         super().__init__('allowed')
@@ -140,7 +140,7 @@ class Allowed(Node):
 
 
 @pytest.mark.starts
-def test_a_node_that_spins_all_the_same_is_run():
+def test_a_node_that_redefines_names_harmless_to_executors_is_run():
     node = run(Allowed)
     stop()
     assert node.is_destroyed

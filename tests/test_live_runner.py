@@ -75,7 +75,7 @@ print('lives', rclpy.ok())
 
 @pytest.mark.parametrize('pause_sec', [0.0, 0.5], ids=['at_once', 'later'])
 def test_a_node_starts_and_lives_after_a_main_that_was_interrupted(pause_sec):
-    # rclpy's own ear for Ctrl-C ends all contexts of the process, in a thread, sooner or later
+    # rclpy's own signal handler ends all contexts of the process, in a thread, sooner or later
     script = INTERRUPTED.format(pause_sec=pause_sec)
     run = subprocess.run(
         [sys.executable, '-c', script], capture_output=True, text=True, check=False
@@ -83,7 +83,7 @@ def test_a_node_starts_and_lives_after_a_main_that_was_interrupted(pause_sec):
     assert run.stdout.splitlines()[-2:] == ['starts True', 'lives True'], run.stderr
 
 
-def test_races_of_rclpys_own_are_not_told_and_other_errors_are():
+def test_errors_from_races_in_rclpy_are_hidden_and_other_errors_are_shown():
     run = subprocess.run(
         [sys.executable, '-c', FORGET], capture_output=True, text=True, check=False
     )
@@ -93,7 +93,7 @@ def test_races_of_rclpys_own_are_not_told_and_other_errors_are():
     assert 'ValueError: of the student' in run.stderr
 
 
-def test_what_is_told_comes_in_one_piece_whatever_interrupts(monkeypatch):
+def test_tell_writes_a_text_of_several_lines_at_once(monkeypatch):
     pieces = []
     stdout = SimpleNamespace(write=pieces.append, flush=lambda: None)
     monkeypatch.setattr(sys, 'stdout', stdout)
