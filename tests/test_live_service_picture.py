@@ -1,4 +1,4 @@
-"""Two clients and one server: a picture, and what it says in words."""
+"""Two clients and one server: a picture, and its description in words."""
 
 from io import BytesIO
 
@@ -19,7 +19,7 @@ def test_each_client_gets_its_own_response_after_its_request(monkeypatch):
         assert asked < worked < steps.index(f'the response goes to {client} alone')
 
 
-def test_it_needs_no_more_than_the_width_of_a_phone():
+def test_the_picture_of_a_service_fits_a_phone_and_is_opaque():
     picture = matplotlib.image.imread(BytesIO(service_picture.draw()))
     assert picture.shape[1] <= 400
     # opaque, and white at its border: as readable on a dark page

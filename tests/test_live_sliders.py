@@ -34,7 +34,7 @@ def pixels(output):
     return imread(io.BytesIO(base64.b64decode(output['data']['image/png'])))
 
 
-def test_there_are_sliders_and_words_where_no_kernel_runs(cells):
+def test_sliders_are_stored_with_a_text_for_pages_without_a_kernel(cells):
     sliders, _ = cells[0].outputs
     assert 'application/vnd.jupyter.widget-view+json' in sliders.data
     assert sliders.data['text/plain'].startswith('Run this cell: two sliders')
@@ -47,11 +47,11 @@ def test_a_moved_slider_moves_the_arm(cells):
     assert not np.array_equal(pixels(before), pixels(after))
 
 
-def test_the_picture_is_told_in_words_for_whoever_does_not_see_it(cells):
+def test_the_alt_text_of_a_picture_is_its_description(cells):
     for picture in (cell.outputs[1] for cell in cells):
         assert picture.metadata['image/png']['alt'] == picture.data['text/plain']
 
 
-def test_outside_a_notebook_the_pose_is_told_in_words(capsys):
+def test_move_arm_prints_the_pose_outside_a_notebook(capsys):
     move_arm(0.0, 90.0)
     assert 'x = 1.000 m, y = 0.800 m' in capsys.readouterr().out

@@ -42,7 +42,7 @@ def lines_of(view):
     return [line.get_xydata() for line in view._picture._figure.axes[0].lines]
 
 
-def test_a_dragged_slider_sends_a_target_and_stop_greys_it_out():
+def test_a_dragged_slider_publishes_a_target_and_stop_disables_the_sliders():
     notebook = new_notebook(cells=[new_code_cell(DRAG)])
     NotebookClient(notebook, timeout=60, kernel_name='python3').execute()
     texts = [output.text for output in notebook.cells[0].outputs if 'text' in output]
@@ -64,7 +64,7 @@ def test_both_branches_end_at_the_target(view):
 
 
 @pytest.mark.parametrize('target', [(2.0, 0.0), (0.0, 0.1), (math.nan, 0.0)])
-def test_out_of_reach_the_arm_stays_and_the_title_says_why(view, target):
+def test_the_arm_stays_and_the_title_says_why_if_a_target_is_out_of_reach(view, target):
     view.receive(Point(x=1.2, y=0.8))
     before = view._pose
     view.receive(Point(x=target[0], y=target[1]))
@@ -75,7 +75,7 @@ def test_out_of_reach_the_arm_stays_and_the_title_says_why(view, target):
     assert view._pose != before
 
 
-def test_the_arm_follows_whoever_publishes(monkeypatch):
+def test_the_arm_follows_the_targets_of_any_publisher(monkeypatch):
     views = []
     receive = TargetView.receive
 
@@ -99,7 +99,7 @@ def test_the_arm_follows_whoever_publishes(monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_kernel_that_ends_with_it_leaves_nothing_on_stderr(tmp_path):
+def test_a_kernel_that_ends_with_open_sliders_prints_no_error(tmp_path):
     log = tmp_path / 'stderr'
     with log.open('w') as stderr:
         manager, client = start_new_kernel(kernel_name='python3', stderr=stderr)

@@ -1,4 +1,4 @@
-"""The threads of a MultiThreadedExecutor begin what they are handed."""
+"""The threads of a MultiThreadedExecutor start each callback that is submitted to them."""
 
 import os
 import threading
@@ -42,7 +42,7 @@ def executor():
 
 
 @pytest.mark.starts
-def test_a_callback_is_handed_to_the_pool_once(executor, monkeypatch):
+def test_a_callback_is_not_submitted_to_the_thread_pool_again_and_again(executor, monkeypatch):
     handed_in = []
     submit = executor._executor.submit
     monkeypatch.setattr(
@@ -67,11 +67,11 @@ def test_a_callback_is_handed_to_the_pool_once(executor, monkeypatch):
         spin_until(lambda number=number: number in received)
     node.destroy_node()
     assert received == [*NUMBERS]
-    # some again, while the machine is busy; with rclpy alone 31,000 and more
+    # some are submitted again while the machine is busy; by rclpy alone, 31,000 and more
     assert len(handed_in) < 20 * len(NUMBERS)
 
 
-def test_while_all_threads_are_busy_who_hands_in_goes_on():
+def test_submitting_does_not_block_while_all_threads_are_busy():
     go_on = threading.Event()
     with PromptPool(1) as pool:
         first = pool.submit(go_on.wait)
@@ -86,7 +86,7 @@ def test_while_all_threads_are_busy_who_hands_in_goes_on():
 
 @pytest.mark.starts
 @pytest.mark.parametrize('processors', [1, 9])
-def test_there_are_as_many_threads_on_each_machine(monkeypatch, processors):
+def test_the_number_of_threads_does_not_depend_on_the_machine(monkeypatch, processors):
     runner.ensure_rclpy()
     monkeypatch.setattr(os, 'sched_getaffinity', lambda _: {*range(processors)})
     monkeypatch.setattr(os, 'cpu_count', lambda: processors)
@@ -96,7 +96,7 @@ def test_there_are_as_many_threads_on_each_machine(monkeypatch, processors):
 
 
 @pytest.mark.starts
-def test_who_says_how_many_threads_has_as_many():
+def test_an_executor_has_as_many_threads_as_its_argument_says():
     runner.ensure_rclpy()
     executor = MultiThreadedExecutor(2)
     assert executor._executor._max_workers == 2

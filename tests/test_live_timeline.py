@@ -1,4 +1,4 @@
-"""Timelines: what they draw, and what they say in words."""
+"""Timelines: what they draw, and their description in words."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_each_row_begins_with_its_first_time(drawn):
     )
 
 
-def test_with_a_period_the_gaps_are_drawn_beside_it(drawn):
+def test_gaps_are_drawn_beside_the_period_if_a_period_is_given(drawn):
     show_arrivals({'ticks': [5.0, 5.051, 5.099]}, period_sec=0.05)
     _, gaps = drawn()[0].axes
     meant, seen = gaps.lines
@@ -61,7 +61,7 @@ def test_a_row_of_one_time_is_refused():
         show_arrivals({'lonely': [1.0]})
 
 
-def test_lines_lead_from_sent_to_received_and_the_lost_are_crossed(drawn):
+def test_lines_join_sent_and_received_times_and_lost_messages_are_crossed(drawn):
     show_deliveries({'depth 1': ARRIVED, 'deaf': {}}, sent=SENT)
     figure, text = drawn()
     some, none = figure.axes
@@ -76,13 +76,13 @@ def test_lines_lead_from_sent_to_received_and_the_lost_are_crossed(drawn):
     )
 
 
-def test_delays_are_in_the_order_of_the_numbers():
+def test_delays_are_in_the_order_of_the_message_numbers():
     assert delays_sec(dict(reversed(ARRIVED.items())), sent=SENT) == pytest.approx(
         [0.01, 0.1, 0.5]
     )
 
 
-def test_a_picture_is_told_in_words_outside_a_notebook(capsys):
+def test_a_timeline_is_described_in_words_outside_a_notebook(capsys):
     show_deliveries({'depth 1': ARRIVED}, sent=SENT)
     show_arrivals({'ticks': [1.0, 2.0]}, period_sec=1.0)
     told = capsys.readouterr().out.splitlines()

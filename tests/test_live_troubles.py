@@ -14,7 +14,7 @@ from my_robot_basics import live
 
 
 @pytest.mark.parametrize('forget', [lambda: troubles.forget('/a'), troubles.forget_all])
-def test_what_could_not_be_published_is_forgotten_with_its_node(monkeypatch, forget):
+def test_an_error_and_an_unpublished_field_are_forgotten_with_their_node(monkeypatch, forget):
     monkeypatch.setattr(troubles, '_unpublished', lambda error: ('header.stamp', 'Time'))
     troubles.remember('/a', TypeError('no stamp'))
     assert (troubles.last('/a'), troubles.field('/a')[0]) == (
@@ -26,7 +26,7 @@ def test_what_could_not_be_published_is_forgotten_with_its_node(monkeypatch, for
     assert troubles.field('/a') == ('', '')
 
 
-def test_what_raised_is_told_and_counted_once_all_else_of_it_is_known(monkeypatch):
+def test_an_exception_is_counted_only_after_its_unpublished_field_is_known(monkeypatch):
     known = []
 
     def look(error):
@@ -39,7 +39,7 @@ def test_what_raised_is_told_and_counted_once_all_else_of_it_is_known(monkeypatc
     troubles.forget('/a')
 
 
-def test_what_a_library_raised_by_itself_is_told_with_its_own_line():
+def test_an_exception_inside_a_library_is_reported_with_the_librarys_line():
     try:
         json.loads('{')
     except ValueError as error:
@@ -49,7 +49,7 @@ def test_what_a_library_raised_by_itself_is_told_with_its_own_line():
 
 
 @pytest.mark.starts
-def test_what_is_no_message_has_no_field_that_is_wrong():
+def test_publishing_an_object_that_is_not_a_message_names_no_field():
     class Wrong(Node):
         def __init__(self):
             super().__init__('wrong')
@@ -63,7 +63,7 @@ def test_what_is_no_message_has_no_field_that_is_wrong():
     live.stop()
 
 
-def test_of_what_keeps_a_node_busy_the_line_is_told_that_is_known(monkeypatch):
+def test_unfinished_returns_the_line_of_a_callback_that_keeps_a_node_busy(monkeypatch):
     def callback(line, *holds):
         return Callback(node_name='', name='f', line=line, seconds=1.0, holds=holds)
 

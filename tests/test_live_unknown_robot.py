@@ -1,4 +1,4 @@
-"""The robot of lesson 5's exercise: who is on its topic, and what its locked cells do."""
+"""The robot of lesson 5's exercise: the nodes on its topic, and what its locked cells do."""
 
 import json
 import subprocess
@@ -24,8 +24,8 @@ start_unknown_robot()
 """
 
 
-def told_by(source):
-    """What a lesson prints that starts the robot and goes on like this."""
+def printed_by(source):
+    """The lines that a lesson prints which starts the robot and then runs this source."""
     run = subprocess.run(
         [sys.executable, '-c', START + source], capture_output=True, text=True, check=True
     )
@@ -34,8 +34,8 @@ def told_by(source):
 
 
 @pytest.mark.starts
-def test_its_nodes_are_where_the_check_has_them():
-    [said] = told_by(
+def test_the_robots_nodes_are_on_the_topic_as_the_check_expects():
+    [said] = printed_by(
         'print(json.dumps([graph().publishers(TOPIC), graph().subscriptions(TOPIC)]))'
     )
     publishers, subscriptions = json.loads(said)
@@ -44,8 +44,8 @@ def test_its_nodes_are_where_the_check_has_them():
 
 
 @pytest.mark.starts
-def test_its_topics_carry_messages():
-    assert told_by(
+def test_the_topic_of_the_robot_carries_messages():
+    assert printed_by(
         'listener, heard = run(Node, "listener"), []\n'
         'listener.create_subscription(JointState, TOPIC, heard.append, 10)\n'
         'wait_until(lambda: heard)\n'
@@ -54,9 +54,9 @@ def test_its_topics_carry_messages():
 
 
 @pytest.mark.starts
-def test_starting_it_again_keeps_its_nodes_and_after_a_stop_brings_them_back():
+def test_starting_the_robot_again_keeps_or_restores_its_8_nodes():
     names = 'print(len(graph().nodes()))\n'
-    assert told_by(
+    assert printed_by(
         f'start_unknown_robot()\n{names}stop()\n{names}start_unknown_robot()\n{names}'
         f'rclpy.shutdown()\nstart_unknown_robot()\n{names}'
     ) == [
@@ -67,8 +67,8 @@ def test_starting_it_again_keeps_its_nodes_and_after_a_stop_brings_them_back():
 
 
 @pytest.mark.starts
-def test_who_else_is_on_its_topic_is_named():
-    said = told_by(
+def test_a_node_that_is_not_part_of_the_robot_is_named_in_a_note():
+    said = printed_by(
         'other = run(Node, "kinematics_publisher")\n'
         'other.create_publisher(JointState, TOPIC, 10)\n'
         'wait_until(lambda: other.count_publishers(TOPIC) == 3)\n'
@@ -83,12 +83,12 @@ NAMES = ['encoder_board', 'self_test', 'motor_guard', 'pose_logger', 'tool_track
 
 
 @pytest.mark.parametrize('name', NAMES)
-def test_no_lesson_tells_its_names(name):
+def test_no_lesson_contains_the_names_of_the_robots_nodes(name):
     lessons = [*ROOT.glob('notebooks/**/[0-9]*.ipynb')]
     assert {path.parents[1].name for path in lessons} == {'notebooks', 'zh_CN'}
     for path in lessons:
         assert name not in path.read_text(encoding='utf-8'), path.name
 
 
-def test_no_table_of_them_can_be_imported():
+def test_no_table_of_the_robots_nodes_can_be_imported():
     assert not [each for each in vars(unknown_robot).values() if NAMES[0] in repr(each)]

@@ -1,4 +1,4 @@
-"""Waiting in a lesson: for as long as it takes, never longer than was said."""
+"""Waiting in a lesson: until a condition is true, and never longer than the timeout."""
 
 import threading
 
@@ -33,18 +33,18 @@ def run_cell(source):
     return client.__dict__.get('shown', []), notebook.cells[0].outputs
 
 
-def test_a_condition_that_is_no_function_is_told_how_to_be_one():
+def test_a_condition_that_is_not_a_function_is_refused_with_a_remedy():
     with pytest.raises(LiveError, match=r'saw \[\]: write wait_until\(lambda: …\)'):
         wait_until([])
 
 
-def test_what_is_true_already_is_not_waited_for():
+def test_a_condition_that_is_already_true_is_checked_once():
     looked = []
     wait_until(lambda: looked.append(1) or True, timeout_sec=0.0)
     assert looked == [1]
 
 
-def test_it_returns_when_the_condition_becomes_true():
+def test_wait_until_returns_when_the_condition_becomes_true():
     event = threading.Event()
     timer = threading.Timer(0.2, event.set)
     timer.start()
@@ -53,7 +53,7 @@ def test_it_returns_when_the_condition_becomes_true():
     assert event.is_set()
 
 
-def test_after_the_limit_it_raises_one_short_readable_error():
+def test_wait_until_raises_a_short_readable_error_after_the_timeout():
     with pytest.raises(
         TimeoutError, match=r'waited 0\.05 s, .*: is the node still running'
     ) as info:
@@ -61,13 +61,13 @@ def test_after_the_limit_it_raises_one_short_readable_error():
     assert isinstance(info.value, LiveError)
 
 
-def test_what_the_condition_raises_is_raised():
+def test_an_exception_of_the_condition_is_raised():
     with pytest.raises(ZeroDivisionError):
         wait_until(lambda: 1 / 0)
 
 
 @pytest.mark.starts
-def test_a_long_wait_says_so_and_leaves_nothing_to_compare():
+def test_a_long_wait_shows_its_progress_and_removes_it_at_the_end():
     shown, outputs = run_cell(SLOW.format(seconds=2.5, timeout_sec=30))
     texts = [data['text/plain'] for data in shown if data]
     assert texts[0] == 'waiting … 1 s of at most 30 s'
@@ -86,7 +86,7 @@ def test_a_short_wait_shows_nothing(monkeypatch):
 
 
 @pytest.mark.starts
-def test_in_a_cell_an_error_takes_one_or_two_lines_and_the_progress_is_gone():
+def test_a_timeout_in_a_cell_takes_few_lines_and_removes_the_progress():
     shown, outputs = run_cell(SLOW.format(seconds=60, timeout_sec=1.2))
     assert shown[-1] == {}
     [error] = [output for output in outputs if output.output_type == 'error']

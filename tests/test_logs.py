@@ -1,4 +1,4 @@
-"""What is logged moves no cursor, whatever names and messages hold."""
+"""Log lines contain no escape sequence, whatever names and messages contain."""
 
 import re
 import subprocess
@@ -29,7 +29,7 @@ except ValueError:
 
 
 @pytest.mark.parametrize('logging', [OURS, NBGRADERS], ids=['./course', 'nbgrader'])
-def test_no_escape_of_a_name_reaches_the_terminal(logging):
+def test_no_escape_sequence_in_a_name_reaches_the_terminal(logging):
     run = subprocess.run(
         [sys.executable, '-P', '-c', logging + LOGGED], capture_output=True, text=True, check=True
     )

@@ -89,13 +89,13 @@ def test_one_token_is_enough_for_a_class(given, platform):
     assert platform.requests.count('POST /token') == 1
 
 
-def test_a_token_that_is_about_to_end_is_used_no_more(given, platform):
+def test_a_token_that_is_about_to_expire_is_replaced(given, platform):
     platform.token_seconds = 10
     assert given(cell('ada', 4.0), cell('bob', 2.5)) == 0
     assert platform.requests.count('POST /token') > 1
 
 
-def test_only_what_is_final_is_sent_and_who_is_unknown_is_listed(given, platform, capsys):
+def test_only_final_scores_are_sent_and_the_other_students_are_listed(given, platform, capsys):
     assert given(cell('ada', None), cell('dan', 3.0), cell('bob', -1.0)) == 0
     said = capsys.readouterr().out
     assert f'{LESSON}: ada needs manual grading' in said
@@ -103,7 +103,7 @@ def test_only_what_is_final_is_sent_and_who_is_unknown_is_listed(given, platform
     assert platform.received == [sent(1, '4712', 0.0)]  # no platform takes less than nothing
 
 
-def test_one_assignment_can_be_sent(given, platform, capsys):
+def test_the_scores_of_one_assignment_can_be_sent(given, platform, capsys):
     cells = cell('ada', 4.0), cell('ada', 1.0, OTHER)
     assert given(*cells, assignment=[OTHER]) == 0
     assert platform.received == [sent(1, '4711', 1.0)]
@@ -119,7 +119,7 @@ def test_one_assignment_can_be_sent(given, platform, capsys):
         ('talks nonsense', 'an answer that is not in the format of LTI'),
     ],
 )
-def test_nothing_is_lost_while_the_platform_is_away(mood, why, given, platform, capsys):
+def test_no_score_is_lost_while_the_platform_fails_to_answer(mood, why, given, platform, capsys):
     platform.mood = mood
     assert given(cell('ada', 4.0), cell('bob', 2.5)) == 1
     said = capsys.readouterr().out
@@ -134,7 +134,7 @@ def test_nothing_is_lost_while_the_platform_is_away(mood, why, given, platform, 
     assert sorted(platform.received) == [sent(1, '4711', 4.5), sent(1, '4712', 2.5)]
 
 
-def test_nothing_is_lost_where_nobody_answers(given, platform, capsys):
+def test_no_score_is_lost_if_the_platform_refuses_connections(given, platform, capsys):
     port = int(platform.address.rpartition(':')[2])
     there = SETTINGS.format(client=CLIENT, address=f'http://127.0.0.1:{free_port()}')
     write(given.course, there)
@@ -160,7 +160,9 @@ def test_a_score_whose_answer_was_lost_is_not_counted_as_refused(given, platform
     assert platform.received == [sent(1, '4712', 1.0), sent(1, '4711', 4.0)]
 
 
-def test_a_sender_that_was_killed_before_the_answer_sends_it_again(given, platform, monkeypatch):
+def test_a_score_is_sent_again_if_the_sender_was_killed_before_the_response(
+    given, platform, monkeypatch
+):
     def killed(self, score):
         raise KeyboardInterrupt
 
@@ -171,7 +173,7 @@ def test_a_sender_that_was_killed_before_the_answer_sends_it_again(given, platfo
     assert platform.received == [sent(1, '4711', 4.0)]
 
 
-def test_a_newer_score_that_a_person_gave_there_stays_and_is_told(given, platform, capsys):
+def test_a_newer_score_on_the_platform_stays_and_the_refusal_is_reported(given, platform, capsys):
     given(cell('ada', 4.0))
     platform.scores['/lineitems/1', '4711']['timestamp'] = '2999-01-01T00:00:00+00:00'
     assert given(cell('ada', 5.0)) == 1
@@ -180,7 +182,7 @@ def test_a_newer_score_that_a_person_gave_there_stays_and_is_told(given, platfor
     assert platform.received == [sent(1, '4711', 4.0)]
 
 
-def test_one_student_who_is_refused_holds_up_nobody(given, platform, capsys):
+def test_a_refused_score_does_not_hold_up_other_students(given, platform, capsys):
     platform.users.remove('4711')
     assert given(cell('ada', 4.0), cell('bob', 2.5)) == 1
     said = capsys.readouterr().out
@@ -193,7 +195,7 @@ def test_one_student_who_is_refused_holds_up_nobody(given, platform, capsys):
 
 
 @pytest.mark.parametrize('wrong', ['key', 'client', 'audience'])
-def test_who_is_somebody_else_gets_no_token(wrong, given, platform, capsys):
+def test_no_token_is_given_for_a_wrong_key_client_or_audience(wrong, given, platform, capsys):
     settings = SETTINGS.format(
         client='somebody' if wrong == 'client' else CLIENT, address=platform.address
     )
@@ -213,7 +215,7 @@ def test_changes_are_in_order_even_if_the_clock_goes_back(tmp_path):
         assert (waiting.score, waiting.changed > 2000.0) == (2.0, True)
 
 
-def test_what_changed_while_it_was_sent_waits_on(tmp_path):
+def test_a_score_that_changed_while_it_was_sent_still_waits(tmp_path):
     with opened_lti_queue(tmp_path) as queue:
         queue.note([Score('ada', LESSON, '4711', 1.0, 5.0, 1000.0)])
         (old,) = queue.waiting()
@@ -241,7 +243,7 @@ GOOD = SETTINGS.format(client=CLIENT, address='https://moodle.example.org')
         ('[user_ids]', '[user_ids', 'cannot be read'),
     ],
 )
-def test_what_is_wrong_in_the_settings_is_said(replaced, by, said, tmp_path):
+def test_each_fault_in_the_settings_is_reported(replaced, by, said, tmp_path):
     course = released_course(tmp_path)
     course.gradebook.mkdir(exist_ok=True)
     write(course, GOOD)
@@ -263,13 +265,13 @@ def test_a_key_that_others_may_read_is_refused(tmp_path):
         read_settings(course)
 
 
-def test_without_settings_nothing_is_sent_and_the_way_is_said(tmp_path, capsys):
+def test_sending_without_settings_fails_and_names_the_documentation(tmp_path, capsys):
     course = released_course(tmp_path)
     assert main(['scores', '--send', 'lti'], course=course) == 1
     assert 'docs/lti.md shows one' in capsys.readouterr().err
 
 
-def test_students_may_be_named_as_the_platform_names_them(tmp_path):
+def test_students_may_be_named_by_the_user_ids_of_the_platform(tmp_path):
     course = released_course(tmp_path)
     course.gradebook.mkdir(exist_ok=True)
     text = 'students_are_user_ids = true\n' + GOOD.replace('cleo', 'dora')

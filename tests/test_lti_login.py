@@ -76,12 +76,12 @@ def test_each_login_has_a_nonce_and_a_state_of_its_own(browser, platform):
     assert first['state'] != second['state']
 
 
-def test_names_that_a_person_wrote_about_themselves_make_them_nobody_else(browser):
+def test_other_names_in_a_persons_profile_do_not_change_the_user(browser):
     browser.log_in('of many names')
     assert browser.user() == STUDENT
 
 
-def test_who_teaches_the_course_there_is_the_instructor_here(browser):
+def test_an_instructor_on_the_platform_is_logged_in_as_the_instructor(browser):
     assert browser.log_in('instructor').status_code == 302
     assert browser.user() == INSTRUCTOR
 
@@ -101,7 +101,7 @@ def test_who_teaches_the_course_there_is_the_instructor_here(browser):
         ('in another course', "from its course '3', and this hub is for '2': follow the link th"),
     ],
 )
-def test_who_has_no_account_is_told_what_came_and_what_to_do(who, why, browser):
+def test_a_person_without_an_account_reads_the_claim_and_what_to_do(who, why, browser):
     answer = browser.log_in(who)
     assert answer.status_code == 403
     assert why in said(answer)
@@ -164,7 +164,7 @@ def test_the_key_of_a_platform_may_change(browser, platform):
     assert browser.log_in('student').status_code == 302
 
 
-def test_what_one_browser_was_given_lets_no_other_one_in(browser, platform):
+def test_a_token_for_one_browser_lets_no_other_browser_in(browser, platform):
     form = browser.follow_link('student')
     thief = Browser(platform)
     assert said(thief.send(form)) == 'OAuth state missing from cookies'
@@ -176,7 +176,7 @@ def test_what_one_browser_was_given_lets_no_other_one_in(browser, platform):
     assert browser.send(form).status_code == 302
 
 
-def test_while_the_platform_is_away_nobody_new_gets_in_and_the_hub_goes_on(browser, platform):
+def test_the_hub_keeps_users_and_admits_nobody_while_the_platform_is_away(browser, platform):
     there = Browser(platform)
     there.log_in('student')
     form = browser.follow_link('student')
@@ -189,19 +189,19 @@ def test_while_the_platform_is_away_nobody_new_gets_in_and_the_hub_goes_on(brows
     assert browser.log_in('student').status_code == 302
 
 
-def test_the_login_page_says_where_the_way_in_is_and_takes_no_password(browser, platform):
+def test_the_login_page_names_the_link_to_follow_and_takes_no_password(browser, platform):
     page = browser.session.get(f'{platform.tool}/hub/login')
     assert 'Follow the link to this hub in your course on the learning platform.' in page.text
     assert 'type="password"' not in page.text
 
 
-def test_a_link_leads_nowhere_but_into_the_hub(browser):
+def test_a_target_link_outside_the_hub_is_not_followed(browser):
     answer = browser.log_in('student', target_link_uri=f'{SOMEBODY}//x/hub/home')
     assert answer.headers['Location'].startswith('/x/')
 
 
 def test_the_proxy_loses_none_of_many_quick_answers(browser, platform):
-    """Without keep_alive.cjs, it lost 34 of 500 so."""
+    """Without keep_alive.cjs, the proxy lost 34 of 500 such answers."""
     there = f'{platform.tool}/hub/lti13/oauth_callback'
     form = {'state': 'none', 'id_token': 'none'}
     answers = {browser.session.post(there, data=form).status_code for _ in range(200)}

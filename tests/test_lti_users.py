@@ -1,4 +1,4 @@
-"""The table [lti] of class.toml: what is wrong in it is said, and whom a claim may mean."""
+"""The table [lti] of class.toml: its faults are reported, and a claim is mapped to a user."""
 
 import sys
 import tomllib
@@ -70,7 +70,7 @@ def login(text=GOOD):
         ),
     ],
 )
-def test_what_is_wrong_in_the_table_is_said(replaced, by, said):
+def test_each_fault_in_the_lti_table_is_reported(replaced, by, said):
     login()
     with pytest.raises(ValueError, match=r'docs/lti\.md shows one that is right') as caught:
         login(GOOD.replace(replaced, by, 1))
@@ -85,7 +85,7 @@ def test_what_is_wrong_in_the_table_is_said(replaced, by, said):
     ],
     ids=['class.toml', 'docs/lti.md'],
 )
-def test_the_tables_that_are_shown_are_right_and_name_what_there_is_without_them(text):
+def test_the_example_tables_are_right_and_state_the_default_values(text):
     shown = login(text)
     assert shown.user_of(person('ada') | context('2')) == 'ada'
     assert shown.client_id == {'AbC123'}
@@ -102,7 +102,7 @@ def refused(login, claims):
     return str(caught.value)
 
 
-def test_an_id_of_the_platform_may_name_a_user_and_then_no_name_does():
+def test_user_ids_of_the_platform_replace_user_names():
     by_id = login(GOOD + 'user_ids = {ada = "4711", ruth = "2", cleo = "5"}')
     assert by_id.user_of(person('bob', user_id='4711')) == 'ada'
     assert by_id.user_of(person('bob', 'Instructor', user_id='2')) == 'ruth'
@@ -114,7 +114,7 @@ def test_an_id_of_the_platform_may_name_a_user_and_then_no_name_does():
     )
 
 
-def test_an_address_names_a_user_in_one_domain_alone():
+def test_an_email_address_names_a_user_only_in_the_configured_domain():
     by_mail = login(GOOD + 'username_claim = "email"\nemail_domain = "uni.example.org"')
     for address in ('ada@uni.example.org', 'Ada@Uni.Example.ORG'):
         assert by_mail.user_of(person('bob', email=address)) == 'ada'
@@ -133,24 +133,24 @@ def test_an_address_names_a_user_in_one_domain_alone():
 
 
 @pytest.mark.parametrize('roles', [None, [], 'membership#Instructor', {lti_users.INSTRUCTOR: 1}])
-def test_without_a_list_of_roles_nobody_is_the_instructor(roles):
+def test_nobody_is_the_instructor_without_a_list_of_roles(roles):
     claims = person('ruth') | {f'{lti_users.CLAIM}roles': roles}
     assert 'you teach this course' in refused(login(), claims)
 
 
 @pytest.mark.parametrize('custom', [None, 'username', ['username'], {'user': 'ada'}])
-def test_without_the_claim_nobody_is_taken_for_anybody(custom):
+def test_a_login_without_the_claim_of_the_user_name_is_refused(custom):
     claims = person('x', user_id='ada') | {f'{lti_users.CLAIM}custom': custom, 'username': 'ada'}
     assert 'custom_username = nothing, expected your name' in refused(login(), claims)
 
 
-def test_a_long_name_is_repeated_in_part():
+def test_a_long_name_is_shortened_in_the_error():
     said = refused(login(), person('x\n' * 5000))
     assert len(said) < 300
     assert '\n' not in said
 
 
-def test_a_member_of_a_group_is_known_by_either_of_its_two_lists(monkeypatch):
+def test_is_member_is_true_only_for_a_user_in_the_group(monkeypatch):
     monkeypatch.undo()
     assert lti_users.is_member('daemon', 'daemon')
     assert not lti_users.is_member('bin', 'daemon')

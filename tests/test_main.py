@@ -55,7 +55,7 @@ VERBS_WITH_FEW_ARGUMENTS = {
 
 
 @pytest.mark.parametrize('verb', VERBS_WITH_FEW_ARGUMENTS)
-def test_a_surplus_argument_is_told_with_the_usage_of_its_verb(verb, capsys):
+def test_a_surplus_argument_is_reported_with_the_usage_of_its_verb(verb, capsys):
     with pytest.raises(SystemExit) as end:
         main(VERBS_WITH_FEW_ARGUMENTS[verb])
     said = capsys.readouterr().err
@@ -66,7 +66,7 @@ def test_a_surplus_argument_is_told_with_the_usage_of_its_verb(verb, capsys):
 
 @pytest.mark.parametrize('verb', ['grade', 'scores', 'feedback', 'due', 'collect', 'serve'])
 @pytest.mark.parametrize('is_link', [False, True], ids=['a file', 'a link'])
-def test_something_else_in_the_place_of_the_gradebook_is_named(tmp_path, capsys, verb, is_link):
+def test_a_file_or_broken_link_in_place_of_the_gradebook_is_named(tmp_path, capsys, verb, is_link):
     course = make_course(tmp_path)
     if is_link:
         course.gradebook.symlink_to(tmp_path / 'nowhere')
@@ -81,7 +81,7 @@ def test_something_else_in_the_place_of_the_gradebook_is_named(tmp_path, capsys,
     assert is_link or course.gradebook.read_text() == 'kept'
 
 
-def test_an_emptied_database_is_damaged_where_something_was_graded(tmp_path, capsys):
+def test_an_emptied_database_is_reported_as_damaged_after_grading(tmp_path, capsys):
     course = make_course(tmp_path)
     assert main(['release'], course=course) == 0
     submit(course, 'ada', b'')
@@ -135,13 +135,13 @@ def test_a_damaged_secret_is_named(tmp_path, capsys, kept):
     assert secret.read_text(encoding='utf-8') == kept
 
 
-def test_a_student_s_page_says_that_there_was_no_sandbox(monkeypatch):
+def test_the_error_about_a_missing_sandbox_announces_a_note_on_feedback_pages(monkeypatch):
     monkeypatch.setattr(isolation, 'missing', lambda: 'there is none')
     with pytest.raises(CourseError, match=r'--trust-students\. Each feedback page will say so\.'):
         isolation.require_isolation()
 
 
-def test_an_error_of_ours_is_one_sentence_without_escapes_and_status_1(tmp_path, capsys):
+def test_a_course_error_is_one_line_without_escapes_and_has_status_1(tmp_path, capsys):
     (tmp_path / 'solutions').mkdir()
     assert main(['grade', '\x1b[31mred'], course=Course.at(tmp_path)) == 1
     err = capsys.readouterr().err
@@ -150,14 +150,14 @@ def test_an_error_of_ours_is_one_sentence_without_escapes_and_status_1(tmp_path,
     assert err.count('\n') == 1
 
 
-def test_a_seed_that_is_none_is_told_what_one_is(capsys):
+def test_an_invalid_seed_is_refused_with_the_expected_form(capsys):
     with pytest.raises(SystemExit):
         main(['grade', '--seed', 'no hex'])
     said = capsys.readouterr().err
     assert said.endswith("'no hex' is neither a hexadecimal number nor recorded\n")
 
 
-def test_scores_of_an_assignment_that_is_none_name_those_there_are(tmp_path, capsys):
+def test_scores_of_an_unknown_assignment_name_the_existing_ones(tmp_path, capsys):
     assert main(['scores', '3', '--format', 'canvas'], course=make_course(tmp_path)) == 1
     said = capsys.readouterr().err
     assert said.startswith("course: there is no assignment '3'")
@@ -173,7 +173,7 @@ def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     assert 'run it again to go on' in capsys.readouterr().err
 
 
-def test_all_verbs_in_a_row(tmp_path, capsys):
+def test_all_verbs_work_one_after_another(tmp_path, capsys):
     course = make_course(tmp_path)
     assert main(['release', TOY], course=course) == 0
     released = f'notebooks/{TOY}/{TOY}.ipynb\nnotebooks/index.ipynb\n'
@@ -205,7 +205,7 @@ def test_all_verbs_in_a_row(tmp_path, capsys):
 
 
 @pytest.mark.starts
-def test_points_by_hand_come_before_what_is_given_back(tmp_path, capsys):
+def test_grading_by_hand_is_suggested_before_feedback_and_scores(tmp_path, capsys):
     course = released_course(tmp_path)
     right = 'def double(x):\n    return 2 * x'
     submit(course, 'ada', answered(course, right, explained='Because.'))
@@ -215,7 +215,7 @@ def test_points_by_hand_come_before_what_is_given_back(tmp_path, capsys):
     assert then == './course feedback, ./course scores\n'
 
 
-def test_a_database_in_use_is_waited_for_with_a_word(tmp_path, capsys, monkeypatch):
+def test_a_database_in_use_is_waited_for_with_a_message(tmp_path, capsys, monkeypatch):
     course = make_course(tmp_path)
     make_database(course)
     monkeypatch.setattr(failures, 'TIMEOUT_SEC', 0.2)
@@ -246,7 +246,7 @@ sys.stdin.read()
         process.communicate('')
 
 
-def test_a_reader_that_leaves_ends_a_command_with_a_sentence(tmp_path):
+def test_a_closed_output_pipe_ends_a_command_with_a_message(tmp_path):
     reader, writer = os.pipe()
     os.close(reader)
     course = make_course(tmp_path)
@@ -286,7 +286,7 @@ def test_a_second_writer_waits_for_the_first_and_says_so(tmp_path):
             second.communicate('')
 
 
-def test_a_lock_whose_holder_could_not_be_written_down_is_let_go(tmp_path, monkeypatch):
+def test_a_lock_is_released_if_its_holder_cannot_be_written_down(tmp_path, monkeypatch):
     def full(*_, **__):
         raise OSError(errno.ENOSPC, 'No space left on device')
 
@@ -311,7 +311,7 @@ def test_a_lock_that_is_taken_again_is_free_only_at_the_end_of_the_outermost_blo
     assert is_free()
 
 
-def test_the_sample_class_is_what_demo_grades():
+def test_the_sample_class_has_16_to_20_notebooks_named_after_outcomes():
     from grader.cli.demo import SAMPLES
 
     names = [path.stem.split('-', 2) for path in SAMPLES.glob('*.ipynb')]
@@ -319,7 +319,7 @@ def test_the_sample_class_is_what_demo_grades():
     assert {outcome for _, outcome, _ in names} <= {'pass', 'fail', 'mixed', 'zero'}
 
 
-def test_a_sample_hands_in_the_solution_s_package_with_the_files_beside_it(tmp_path):
+def test_a_sample_is_submitted_with_the_solutions_package_and_its_own_files(tmp_path):
     from grader.cli.demo import SAMPLES, hand_in
 
     course = Course(gradebook=tmp_path / 'gradebook')

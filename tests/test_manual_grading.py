@@ -113,7 +113,7 @@ def page(course, student):
     return (course.folder('feedback', student, TOY) / f'{TOY}.html').read_text(encoding='utf-8')
 
 
-def test_a_written_answer_waits_and_everything_says_so(course):
+def test_a_written_answer_waits_for_points_in_row_table_and_page(course):
     row = grade(course, 'ada', BECAUSE)
     assert (score_of(row), why(row)) == ('3/5 …', 'the rest is graded by hand')
     assert exported(course, 'ada') == ('', 'to be graded by hand')
@@ -121,14 +121,14 @@ def test_a_written_answer_waits_and_everything_says_so(course):
     assert 'Your instructor will read this.' in page(course, 'ada')
 
 
-def test_nobody_has_to_read_what_nobody_wrote(course):
+def test_an_empty_answer_receives_zero_points_without_manual_grading(course):
     row = grade(course, 'bob', '')
     assert (score_of(row), why(row)) == ('3/5', 'there is no answer')
     assert exported(course, 'bob') == ('0.0', 'there is no answer')
     assert 'There is no answer' in page(course, 'bob')
 
 
-def test_the_reason_of_a_check_comes_before_what_waits(course):
+def test_the_reason_of_a_check_replaces_the_note_on_manual_grading(course):
     row = grade(course, 'ada', BECAUSE)
     assert why(SubmissionOutcome('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
 

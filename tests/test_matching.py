@@ -44,7 +44,7 @@ def at(tmp_path):
         'Lab 2_ada_attempt_2026-01-02-03-04-05_work.zip/02_joint_state.ipynb',
     ],
 )
-def test_a_notebook_finds_its_student_and_its_assignment(path, at):
+def test_student_and_assignment_are_found_in_the_path_of_a_notebook(path, at):
     assert owners(at(path)) == ([('ada', '02_joint_state')], [])
 
 
@@ -66,7 +66,7 @@ def test_names_from_any_alphabet_are_kept(name, at):
         'Hausaufgabe 2_02_joint_state.ipynb',
     ],
 )
-def test_a_word_for_work_or_a_class_is_no_student_whoever_wrote_it(path, at):
+def test_a_word_for_work_or_a_class_is_not_taken_as_a_student(path, at):
     taken, [(_, why)] = owners(at(path))
     assert taken == []
     assert 'names work or a class' in why
@@ -77,7 +77,7 @@ def test_a_name_is_the_same_however_its_letters_are_composed(at):
     assert {student for student, _ in found[0]} == {'Zo\u00eb'}
 
 
-def test_who_named_no_assignment_reads_all_of_them_in_order(at):
+def test_a_file_named_after_no_assignment_is_refused_with_a_list_of_all(at):
     _, (left,) = match([at('ada/homework.ipynb')], ['00_arm', '01_a_longer_name'])
     assert left.reason.endswith(', with 00_arm, 01_a_longer_name')
 
@@ -107,14 +107,14 @@ def test_who_named_no_assignment_reads_all_of_them_in_order(at):
         (' /02_joint_state.ipynb', 'no name of a student'),
     ],
 )
-def test_what_is_nobodys_is_left_with_a_reason(path, reason, at):
+def test_a_file_without_a_clear_student_or_assignment_is_left_with_a_reason(path, reason, at):
     taken, [(left, why)] = owners(at(path, 'x'))
     assert taken == []
     assert left == path
     assert reason in why
 
 
-def test_nobody_is_named_by_a_file_in_somebody_elses_folder(at):
+def test_a_file_named_after_another_student_than_its_folder_is_left_out(at):
     mine, forged = at('class/ada/02_joint_state.ipynb'), at('class/bob/ada_02_joint_state.ipynb')
     taken, [(left, why)] = owners(mine, forged)
     assert taken == [('ada', '02_joint_state')]
@@ -122,7 +122,7 @@ def test_nobody_is_named_by_a_file_in_somebody_elses_folder(at):
     assert 'named after ada, and in a folder bob' in why
 
 
-def test_a_folder_that_holds_all_is_no_student(at):
+def test_a_folder_that_contains_all_submissions_is_not_a_student(at):
     found = owners(at('week 3/ada_02_joint_state.ipynb'), at('week 3/bob_02_joint_state.ipynb'))
     assert found == ([('ada', '02_joint_state'), ('bob', '02_joint_state')], [])
 
@@ -152,7 +152,7 @@ def test_python_files_go_with_the_notebooks_of_one_student(at):
     assert {each.incoming.parts[-1] for each in left} == {'whose.py', 'far.py', 'a\x1b.py'}
 
 
-def test_what_can_t_be_read_and_what_nobody_grades_is_told_apart(at):
+def test_unreadable_files_matter_and_files_of_other_types_do_not(at):
     _, left = match([at('a.zip', problem='broken'), at('ada/notes.txt')], ASSIGNMENTS)
     assert [(each.reason, each.matters) for each in left] == [
         ('broken', True),
@@ -160,7 +160,7 @@ def test_what_can_t_be_read_and_what_nobody_grades_is_told_apart(at):
     ]
 
 
-def test_two_homeworks_are_not_one_student(at):
+def test_an_archive_named_homework_does_not_name_a_student(at):
     taken, left = owners(
         at('Ada_1_assignsubmission_file_/homework.zip/03_publisher.ipynb'),
         at('Bob_2_assignsubmission_file_/homework.zip/03_publisher.ipynb'),
@@ -175,7 +175,7 @@ def test_two_homeworks_are_not_one_student(at):
     assert 'nothing says whose it is' in why
 
 
-def test_a_class_beside_other_files_is_read_as_before(at):
+def test_students_are_found_in_folders_of_weeks_beside_single_files(at):
     assert owners(
         at('week 3/ada/03_publisher.ipynb'),
         at('week 3/bob/03_publisher.ipynb'),
@@ -192,7 +192,7 @@ def test_a_class_beside_other_files_is_read_as_before(at):
     )
 
 
-def test_where_two_folders_may_be_the_student_s_a_person_decides(at):
+def test_a_person_decides_if_two_folders_may_name_the_student(at):
     paths = 'CS101/ada/03_publisher.ipynb', 'CS102/bob/03_publisher.ipynb'
     taken, left = owners(*map(at, paths))
     assert taken == []
@@ -203,7 +203,7 @@ def test_where_two_folders_may_be_the_student_s_a_person_decides(at):
 
 
 @pytest.mark.parametrize('name', ['fay_03_Publisher.ipynb', '03_publisher_fay.ipynb'])
-def test_a_name_that_is_nearly_right_is_told_its_assignment_alone(name):
+def test_the_reason_for_a_nearly_right_name_lists_only_its_assignment(name):
     _, [left] = match([Incoming((name,), Path(name))], ['02_joint_state', '03_publisher'])
     assert left.reason.startswith('named after no assignment: expected STUDENT_ASSIGNMENT.ipynb')
     assert left.reason.endswith('with 03_publisher')

@@ -12,23 +12,23 @@ def at(tmp_path):
 
 
 @pytest.mark.parametrize('folder', ['ws_2026_2027', 'ws_2026_2027_a', 'ros_2026_2026_b'])
-def test_a_folder_of_a_term_is_no_upload_of_canvas(folder, at):
+def test_a_folder_of_a_term_is_not_taken_as_an_upload_of_canvas(folder, at):
     found = [at(f'{folder}/{who}/02_joint_state.ipynb') for who in ('ada', 'bob')]
     assert owners(*found) == ([('ada', '02_joint_state'), ('bob', '02_joint_state')], [])
-    taken, ((_, why),) = owners(found[0])  # nothing beside it says that it is no student
+    taken, ((_, why),) = owners(found[0])  # alone, the folder might be a student's
     assert (taken, why[:10]) == ([], 'it may be ')
 
 
 @pytest.mark.parametrize('folder', ['kurs_101_202', 'kurs_101_202_b', 'ros_101_202', 'ros_12_345'])
 @pytest.mark.parametrize('form', ['{0}/{1}.ipynb', '{0}_{1}.ipynb', '{0}_18151_21012_{1}.ipynb'])
-def test_nor_is_one_of_a_class_with_numbers(folder, form, at):
+def test_a_folder_of_a_class_with_numbers_is_not_taken_as_an_upload(folder, form, at):
     class_of_two = ('ada', '02_joint_state'), ('bob', '03_publisher')
     found = [at(f'{folder}/{form.format(*each)}') for each in class_of_two]
     assert owners(*found) == ([*class_of_two], [])
 
 
 @pytest.mark.parametrize('folder', ['kurs_101_202', 'ros_101_202', 'ros_101_202_b', 'kurs_7_8'])
-def test_no_class_is_a_student_because_one_of_it_handed_in(folder, at):
+def test_a_class_folder_with_one_submission_is_not_taken_as_a_student(folder, at):
     for path in ('ada/02_joint_state.ipynb', 'ada.zip/02_joint_state.ipynb'):
         taken, _ = owners(at(f'{folder}/{path}'))
         assert {student for student, _ in taken} <= {'ada'}
@@ -46,7 +46,7 @@ def test_a_class_in_a_folder_like_an_unpacked_upload_is_left_to_a_person(at):
 
 
 @pytest.mark.parametrize('inside', ['', 'notebooks/', 'turtle/', 'Ada/', '02_joint_state/'])
-def test_an_upload_of_canvas_that_was_unpacked_is_its_student_s(inside, at):
+def test_an_unpacked_upload_of_canvas_belongs_to_its_student(inside, at):
     found = owners(at(f'ada_18151_21012_turtle/{inside}02_joint_state.ipynb'))
     assert found == ([('ada', '02_joint_state')], [])
 
@@ -62,7 +62,7 @@ UPLOADS = {
 
 
 @pytest.mark.parametrize('upload', UPLOADS.values(), ids=UPLOADS)
-def test_an_upload_that_bears_another_name_is_told_to_a_person(upload, at):
+def test_an_upload_under_another_students_name_is_left_to_a_person(upload, at):
     for own in ('ada', 'Ada', 'my homework', 'lab 3', '02_joint_state'):
         (taken,), left = match([at(upload.format(own))], ASSIGNMENTS, students=['bob'])
         assert (taken.student_id, taken.remark, left) == ('ada', '', [])
@@ -116,7 +116,7 @@ FORGED = [
 
 
 @pytest.mark.parametrize('path', FORGED)
-def test_what_a_student_named_is_listed_and_replaces_nobodys_work(path, at):
+def test_a_file_with_a_forged_name_is_listed_and_replaces_no_other_work(path, at):
     hers, forged = at(HERS), at(path)
     taken, [(left, why)] = owners(hers, forged)
     assert taken == [('Ada Lovelace', '03_publisher')]
@@ -125,7 +125,7 @@ def test_what_a_student_named_is_listed_and_replaces_nobodys_work(path, at):
 
 
 @pytest.mark.parametrize('path', FORGED)
-def test_nor_does_it_where_ada_has_handed_in_before(path, at):
+def test_a_file_with_a_forged_name_is_not_assigned_to_a_known_student(path, at):
     taken, left = owners(at(path), students=['Ada Lovelace', 'Mallory Evil'])
     assert 'Ada Lovelace' not in {student for student, _ in taken}
     assert len(taken) + len(left) == 1
@@ -133,7 +133,7 @@ def test_nor_does_it_where_ada_has_handed_in_before(path, at):
 
 @pytest.mark.parametrize('path', FORGED)
 @pytest.mark.parametrize('above', ['', 'ROS 2-Lab 3-4711/'])
-def test_nor_alone_in_a_download(above, path, at):
+def test_a_single_file_with_a_forged_name_is_not_assigned_to_that_student(above, path, at):
     if path == f'Mallory Evil/{ADA}/03_publisher.ipynb':
         path = f'Mallory Evil.zip/{ADA}/03_publisher.ipynb'  # a folder may be the teacher's
     taken, left = owners(at(above + path))
@@ -162,7 +162,7 @@ def test_nor_alone_in_a_download(above, path, at):
         'Ada Lovelace (1).zip/03_publisher.ipynb',
     ],
 )
-def test_a_student_s_own_name_in_any_spelling_is_fine(path, at):
+def test_a_students_own_name_is_accepted_in_any_spelling(path, at):
     (hand_in,), left = match([at(path)], ASSIGNMENTS)
     assert (hand_in.student_id, hand_in.assignment) == ('Ada Lovelace', '03_publisher')
     assert (hand_in.remark, left) == ('', [])
@@ -179,13 +179,13 @@ def test_a_student_s_own_name_in_any_spelling_is_fine(path, at):
         ('作业 3_小明_attempt_2026-01-02-03-04-05_03_publisher.ipynb', '小明'),
     ],
 )
-def test_names_of_every_alphabet_on_every_platform(path, student, at):
+def test_names_of_every_alphabet_are_read_on_every_platform(path, student, at):
     (hand_in,), left = match([at(path)], ASSIGNMENTS)
     assert (hand_in.student_id, left) == (student, [])
     assert hand_in.label.number in path
 
 
-def test_a_folder_named_after_nobody_known_is_taken_and_told(at):
+def test_a_folder_named_after_no_known_student_is_taken_with_a_remark(at):
     (hand_in,), left = match([at(f'{ADA}/turtle-bot/03_publisher.ipynb')], ASSIGNMENTS)
     assert (hand_in.student_id, left) == ('Ada Lovelace', [])
     assert hand_in.remark == "from a folder of their own, 'turtle-bot'"
@@ -217,13 +217,13 @@ def test_names_that_blackboard_leaves_unclear_are_left_to_a_person(at):
     assert all('there are several lovelace' in why for _, why in left)
 
 
-def test_a_name_stands_before_another_assignment_of_blackboard_s(at):
+def test_a_student_is_found_in_two_assignments_of_blackboard(at):
     lab_3 = 'Lab 3_ada_attempt_2026-01-09-03-04-05_03_publisher.ipynb'
     taken, left = owners(at(BLACKBOARD.format('ada', '09')), at(lab_3))
     assert (taken, left) == ([('ada', '02_joint_state'), ('ada', '03_publisher')], [])
 
 
-def test_what_moodle_gives_out_says_which_of_two_names_counts(at):
+def test_the_reason_for_two_names_in_a_moodle_upload_names_the_uploader(at):
     path = 'Mallory_666_assignsubmission_file_/Ada_02_joint_state.ipynb'
     taken, [(_, reason)] = owners(at(path))
     assert taken == []

@@ -11,7 +11,7 @@ def at(tmp_path):
     return arriving(tmp_path)
 
 
-def test_the_time_is_the_exchanges_or_the_files(at):
+def test_the_time_of_a_submission_is_from_the_exchange_or_the_file(at):
     notebook = at('ada/02_joint_state/02_joint_state.ipynb')
     stamp = at('ada/02_joint_state/timestamp.txt', '2026-03-04 05:06:07.89 UTC\n')
     assert time_of(notebook, stamp) == ('03-04 05:06:07', [])
@@ -25,7 +25,7 @@ def test_the_time_is_the_exchanges_or_the_files(at):
     assert time_of(*exchanged) == ('02-03 04:05:06', ['it holds no date'])
 
 
-def test_a_time_that_a_student_packed_is_not_believed(at):
+def test_a_timestamp_in_an_archive_of_a_student_is_not_used(at):
     notebook, stamp = at('ada.zip/02_joint_state.ipynb'), at('ada.zip/timestamp.txt', '2020-01-01')
     assert time_of(notebook, stamp) == (
         None,
@@ -40,7 +40,7 @@ def test_several_notebooks_of_one_exercise_are_put_in_order_by_their_times(at):
     assert left == []
 
 
-def test_where_no_time_tells_them_apart_none_is_taken(at):
+def test_different_notebooks_without_distinct_times_are_left_out(at):
     two = at('ada_02_joint_state.ipynb', 'one'), at('ada-02_joint_state.ipynb', 'two')
     for options in ({}, {'file_times': True}):  # they are of the same time, too
         taken, left = owners(*two, **options)
@@ -66,7 +66,7 @@ def test_blackboard_says_which_attempt_is_the_latest(at):
     assert local.strftime('%m-%d %H:%M:%S') == '01-09 03:04:05'
 
 
-def test_a_time_that_is_none_is_left_out(at):
+def test_an_invalid_time_in_a_file_name_is_ignored(at):
     assert time_of(at(BLACKBOARD.format('ada', '41'))) == (None, [])
 
 
@@ -74,7 +74,7 @@ def test_a_time_that_is_none_is_left_out(at):
     'upload', [ADA, 'lovelaceada_18151_21012_homework.zip', f'{ADA}/homework.zip']
 )
 @pytest.mark.parametrize('inside', ['', '/ada lovelace'])
-def test_a_time_that_a_student_uploaded_is_not_believed(upload, inside, at):
+def test_a_timestamp_in_an_upload_of_a_student_is_not_used(upload, inside, at):
     notebook = at(f'{upload}{inside}/03_publisher.ipynb')
     stamp = at(f'{upload}{inside}/timestamp.txt', '2020-01-01 00:00:00 UTC')
     when, [why] = time_of(notebook, stamp)
@@ -84,7 +84,7 @@ def test_a_time_that_a_student_uploaded_is_not_believed(upload, inside, at):
 
 
 @pytest.mark.parametrize('upload', [ADA, 'ada lovelace.zip', f'{ADA}/homework.zip'])
-def test_nor_one_in_the_name_of_a_folder_in_the_exchange_s_form(upload, at):
+def test_a_time_in_the_name_of_an_uploaded_folder_is_not_used(upload, at):
     folder = f'{upload}/Ada Lovelace+03_publisher+2020-01-01 00:00:00 UTC'
     for options, when in (({}, None), ({'file_times': True}, '01-01 12:00:00')):
         assert time_of(at(f'{folder}/03_publisher.ipynb'), **options) == (when, [])

@@ -15,7 +15,7 @@ def test_reasons_are_grouped_by_their_words_without_the_numbers(reason, words):
     assert numberless(reason) == (words or reason)
 
 
-def test_what_differs_in_numbers_alone_is_one_reason_of_each_assignment():
+def test_messages_that_differ_only_in_numbers_are_one_reason_per_assignment():
     said = [
         CellMessage('ada', 'one', 'a', 'saw 1'),
         CellMessage('bob', 'one', 'b', 'saw 2'),
@@ -45,7 +45,7 @@ def test_what_differs_in_numbers_alone_is_one_reason_of_each_assignment():
         ('saw 7', 'saw 7', 'saw 7'),
     ],
 )
-def test_a_number_that_is_the_same_for_all_is_told(one, other, words):
+def test_a_number_that_all_messages_share_is_kept_in_the_reason(one, other, words):
     [reason] = grouped(
         [CellMessage('ada', 'one', 'a', one), CellMessage('bob', 'one', 'a', other)]
     )

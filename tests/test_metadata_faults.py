@@ -1,4 +1,4 @@
-"""What an author forgets in Create Assignment is named with its cell, before nbgrader sees it."""
+"""Each omission in Create Assignment is reported with its cell, before nbgrader reads it."""
 
 import re
 
@@ -61,7 +61,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(('marks', 'fault'), FAULTS.values(), ids=FAULTS)
-def test_what_is_wrong_in_create_assignment_is_named_with_what_to_do(marks, fault):
+def test_each_fault_in_create_assignment_is_reported_with_a_remedy(marks, fault):
     lesson = toy_lesson()
     assert list(metadata_faults(lesson)) == []
     lesson.cells[7].metadata.nbgrader.update(marks)
@@ -78,7 +78,7 @@ def test_what_is_wrong_in_create_assignment_is_named_with_what_to_do(marks, faul
         ),
     ],
 )
-def test_what_nbgrader_refuses_in_a_cell_without_a_type_is_named(marks, fault):
+def test_a_cell_without_a_type_that_nbgrader_refuses_is_reported(marks, fault):
     lesson = toy_lesson()
     lesson.cells[0].metadata['nbgrader'] = from_dict(marks)
     with pytest.raises((SchemaTooOldError, ValidationError)):
@@ -87,7 +87,7 @@ def test_what_nbgrader_refuses_in_a_cell_without_a_type_is_named(marks, fault):
     assert said.startswith(fault)
 
 
-def test_a_check_that_is_a_text_and_an_answer_in_words_without_points_are_named():
+def test_a_check_in_markdown_and_a_written_answer_without_points_are_reported():
     lesson = toy_lesson()
     lesson.cells[7].cell_type = 'markdown'
     lesson.cells[8].metadata.nbgrader.grade = False
@@ -98,7 +98,7 @@ def test_a_check_that_is_a_text_and_an_answer_in_words_without_points_are_named(
     assert as_answer.startswith('the cell `explain` is an answer in words, which no check can')
 
 
-def test_a_check_that_is_no_python_is_named_with_its_line():
+def test_a_check_that_is_not_valid_python_is_reported_with_the_line():
     lesson = toy_lesson()
     lesson.cells[6].source += '\nif seen =='
     [fault] = metadata_faults(lesson)
@@ -108,7 +108,7 @@ def test_a_check_that_is_no_python_is_named_with_its_line():
 
 
 @pytest.mark.parametrize('use', [release, lambda course: register(course, TOY)])
-def test_with_and_without_a_gradebook_the_lesson_and_its_cell_are_named(use, tmp_path):
+def test_release_and_register_name_the_lesson_and_its_faulty_cell(use, tmp_path):
     lesson = toy_lesson()
     del lesson.cells[4].metadata['nbgrader']
     course = make_course(tmp_path / 'course')

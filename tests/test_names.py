@@ -94,7 +94,7 @@ CELLS = {
 
 
 @pytest.mark.parametrize(('source', 'bound', 'needed'), CELLS.values(), ids=CELLS)
-def test_names_of_a_cell(source, bound, needed):
+def test_names_that_a_cell_binds_and_needs_are_found(source, bound, needed):
     names = names_of(source)
     assert (names.bound, names.needed) == (set(bound.split()), set(needed.split()))
 
@@ -111,11 +111,11 @@ def test_empty_lines_are_not_looked_through_again_and_again(before):
     'source',
     ['from math import *', '%run helper.py', 'x = 1\nexec("h = 1")', 'globals()["h"] = 1'],
 )
-def test_some_cells_bind_more_than_is_told(source):
+def test_cells_that_may_bind_any_name_are_marked(source):
     assert names_of(source).binds_more
 
 
-def test_an_import_binds_no_more_than_is_told():
+def test_an_import_of_names_is_not_marked_as_binding_any_name():
     assert not names_of('from math import sin\nimport cmath').binds_more
 
 
@@ -132,14 +132,14 @@ def test_an_import_binds_no_more_than_is_told():
         'get_ipython().user_ns["np"]',
     ],
 )
-def test_names_that_are_looked_up_by_other_means_are_not_known(source):
+def test_cells_that_look_names_up_by_other_means_are_marked(source):
     assert names_of(source).needs_more
 
 
 @pytest.mark.parametrize(
     'source', ['def f(): return getattr(np, "pi")', 'evaluate(x)', 'x = "in the main program"']
 )
-def test_ordinary_names_are_known(source):
+def test_cells_with_ordinary_names_are_not_marked(source):
     assert not names_of(source).needs_more
 
 
@@ -152,11 +152,11 @@ def test_ordinary_names_are_known(source):
         ("ValueError: 'np', name 'np'", set()),
     ],
 )
-def test_names_that_an_error_says_are_missing(said, names):
+def test_missing_names_are_read_from_an_error_message(said, names):
     assert names_not_defined(said) == names
 
 
-def test_reading_a_cell_runs_none_of_it(capfd):
+def test_reading_a_cell_runs_no_code_of_the_cell(capfd):
     names_of('print("ran")\n!echo ran\nraise SystemExit')
     assert capfd.readouterr() == ('', '')
 
@@ -175,7 +175,7 @@ def tokenized(monkeypatch):
 
 
 @pytest.mark.parametrize('line', ['a?', '%a', '!a', 'a=%b', ',f a'])
-def test_magics_beyond_number_are_not_read(line, tokenized):
+def test_a_cell_with_very_many_magics_is_not_read(line, tokenized):
     """IPython would read all of the cell anew for each of them, and give up after 500."""
     assert names_of(f'{line}\n' * 600) == Names()
     assert tokenized == []
@@ -190,7 +190,7 @@ def test_a_long_cell_with_a_magic_is_not_read(more, is_read, tokenized):
 
 
 @pytest.mark.parametrize('text', [';', ',', '\t;'])
-def test_what_ipython_reads_again_and_again_is_left_soon(text, tokenized):
+def test_a_cell_that_ipython_reads_again_and_again_is_given_up_soon(text, tokenized):
     assert names_of(f'x = 1\n{text * 700}\n') == Names()
     assert len(tokenized) <= 2 * MAX_IPYTHON['lines']
 
@@ -205,5 +205,5 @@ ARGUMENTS = {
 
 
 @pytest.mark.parametrize(('source', 'expected'), ARGUMENTS.values(), ids=ARGUMENTS)
-def test_string_arguments_of_a_call(source, expected):
+def test_string_arguments_of_a_call_are_found(source, expected):
     assert string_arguments(source, 'reset') == expected

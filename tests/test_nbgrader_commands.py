@@ -1,4 +1,4 @@
-"""nbgrader's own commands, in real rooms, beside ours: the same scores and the same pages."""
+"""nbgrader's own commands, in real rooms, give the same scores and pages as ours."""
 
 import csv
 import json
@@ -78,7 +78,7 @@ def nbgrader(course: Course, *arguments: str) -> str:
 
 
 @pytest.mark.slow
-def test_both_ways_give_the_same_scores(courses):
+def test_course_grade_and_nbgrader_autograde_give_the_same_scores(courses):
     ours, theirs = (
         {(r.student_id, r.grade_id): r.score for r in records(course)} for course in courses
     )
@@ -100,7 +100,7 @@ def test_both_ways_give_the_same_scores(courses):
 
 
 @pytest.mark.slow
-def test_both_ways_write_the_same_pages(courses):
+def test_course_feedback_and_nbgrader_write_the_same_pages(courses):
     ours, theirs = courses
     assert main(['feedback'], course=ours) == 0
     nbgrader(theirs, 'generate_feedback', TOY)
@@ -111,7 +111,7 @@ def test_both_ways_write_the_same_pages(courses):
 
 
 @pytest.mark.slow  # its scores are read above from where it reads them
-def test_nbgrader_exports_what_we_stored(courses):
+def test_nbgrader_exports_the_scores_of_course_grade(courses):
     ours, _ = courses
     nbgrader(ours, 'export', f'--CourseDirectory.db_url={ours.db_url}', '--to', 'ours.csv')
     with (ours.root / 'ours.csv').open() as file:
@@ -120,7 +120,7 @@ def test_nbgrader_exports_what_we_stored(courses):
 
 
 @pytest.mark.slow
-def test_the_formgrader_grades_alike_inside_its_event_loop(courses):
+def test_the_formgrader_gives_the_same_scores_in_its_event_loop(courses):
     _, theirs = courses
     before = [r for r in records(theirs) if r.student_id == 'small']
     code = (
@@ -147,7 +147,7 @@ def test_the_formgrader_grades_alike_inside_its_event_loop(courses):
 
 
 @pytest.mark.slow
-def test_nbgrader_stops_where_our_grader_is_missing(courses):
+def test_nbgrader_stops_with_advice_if_the_grader_package_is_missing(courses):
     ours, _ = courses
     code = (
         'import sys\n'

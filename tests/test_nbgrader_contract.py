@@ -46,11 +46,11 @@ DEFAULTS = {
 
 
 @pytest.mark.parametrize(('passes', 'expected'), DEFAULTS.values(), ids=DEFAULTS)
-def test_the_default_passes_are_those_that_ours_stand_in_for(passes, expected):
+def test_the_default_passes_of_nbgrader_are_the_expected_ones(passes, expected):
     assert names(passes) == expected.split()
 
 
-def test_validate_always_runs_its_own_passes_30_s_a_cell():
+def test_nbgrader_validate_always_runs_its_own_passes_with_30_s_a_cell():
     assert not Validator.class_traits()['preprocessors'].metadata.get('config')
     assert Execute().timeout == 30
     assert Execute().allow_errors is True
@@ -78,13 +78,13 @@ GRADES = {
 
 
 @pytest.mark.parametrize(('outputs', 'points'), GRADES.values(), ids=GRADES)
-def test_what_determine_grade_makes_of_outputs(outputs, points):
+def test_determine_grade_takes_points_from_the_outputs_of_a_cell(outputs, points):
     marks = {'grade': True, 'solution': False, 'grade_id': 'a', 'points': 3}
     cell = new_code_cell('x', metadata={'nbgrader': marks}, outputs=outputs)
     assert utils.determine_grade(cell) == (points, 3.0)
 
 
-def test_what_determine_grade_makes_of_a_manual_answer():
+def test_determine_grade_gives_no_score_to_a_changed_manual_answer():
     marks = {'grade': True, 'solution': True, 'grade_id': 'a', 'points': 2, 'schema_version': 3}
     cell = new_markdown_cell('stub', metadata={'nbgrader': marks})
     cell.metadata.nbgrader['checksum'] = utils.compute_checksum(cell)
@@ -102,12 +102,12 @@ CELLS = {
 
 
 @pytest.mark.parametrize(('marks', 'expected'), CELLS.values(), ids=CELLS)
-def test_what_nbgrader_calls_grade_solution_and_locked(marks, expected):
+def test_nbgrader_recognises_grade_solution_and_locked_cells(marks, expected):
     cell = new_code_cell('', metadata={'nbgrader': marks})
     assert (utils.is_grade(cell), utils.is_solution(cell), utils.is_locked(cell)) == expected
 
 
-def test_passes_are_told_of_the_submission_and_of_its_folder(tmp_path):
+def test_passes_receive_the_submission_and_its_folder(tmp_path):
     course = CourseDirectory(root=str(tmp_path), db_url='sqlite:///x.db', assignment_id='a')
     course.submitted_directory = 'gradebook/submitted'
     path = tmp_path / 'gradebook/submitted/李雷/a/a.ipynb'
@@ -164,20 +164,20 @@ def test_the_configured_passes_are_registered_and_in_force(config):
         assert Execute not in found
 
 
-def test_healing_comes_first_and_running_before_the_scores_are_saved():
+def test_restoring_is_the_first_pass_and_execution_precedes_saving_scores():
     assert SANITIZE_PASSES[0] == 'grader.autograde.preprocessors.RestoreSubmission'
     assert 'nbgrader.preprocessors.Execute' not in AUTOGRADE_PASSES
     run = AUTOGRADE_PASSES.index('grader.autograde.preprocessors.ExecuteRooms')
     assert run < AUTOGRADE_PASSES.index('grader.storage.save_grades.SaveGrades')
 
 
-def test_our_saver_overrides_what_nbgraders_calls():
+def test_the_methods_that_save_grades_overrides_exist_in_nbgrader():
     for name in ('preprocess', 'preprocess_cell', '_add_score', '_add_comment'):
         assert callable(getattr(SaveAutoGrades, name))
     assert '_add_score(cell, resources)' in inspect.getsource(SaveAutoGrades.preprocess_cell)
 
 
-def test_autograde_writes_what_was_restored_and_runs_what_was_written():
+def test_autograde_converts_each_notebook_twice_reading_it_from_its_file():
     # the method itself, without the gradebook's lock around it
     source = (
         Path(inspect.getsourcefile(Autograde)).read_text().split('def convert_single_notebook')[1]
@@ -188,5 +188,5 @@ def test_autograde_writes_what_was_restored_and_runs_what_was_written():
     assert 'exporter.from_filename' in inspect.getsource(BaseConverter.convert_single_notebook)
 
 
-def test_overwriting_restores_locked_cells_from_the_database():
+def test_overwrite_cells_of_nbgrader_looks_for_locked_cells():
     assert 'is_locked' in inspect.getsource(OverwriteCells)

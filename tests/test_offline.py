@@ -41,7 +41,7 @@ BUILD = (
 
 @pytest.fixture
 def folder(tmp_path):
-    """What was downloaded for Python 3.12."""
+    """A folder of wheels that was downloaded for Python 3.12."""
     folder = tmp_path / 'wheels'
     folder.mkdir()
     for name in FILES:
@@ -99,7 +99,7 @@ def test_a_folder_that_cannot_be_made_is_refused(above, tmp_path):
 
 
 @pytest.mark.parametrize('content', [None, '{'])
-def test_a_folder_that_wheels_has_not_finished_is_refused(content, tmp_path, pins):
+def test_a_folder_that_course_wheels_did_not_finish_is_refused(content, tmp_path, pins):
     if content:
         (tmp_path / CONTENTS).write_text(content)
     assert 'which ./course wheels writes last' in refusal(tmp_path, '3.12.1', pins)
@@ -111,7 +111,7 @@ def test_a_folder_of_somebody_elses_files_is_left_alone(tmp_path):
         what_is_there(tmp_path)
 
 
-def test_the_pythons_are_those_that_the_pins_are_for():
+def test_the_python_versions_are_those_of_the_pins():
     assert f'for CPython {PYTHONS[0]} to {PYTHONS[-1]}' in (ROOT / 'environment.txt').read_text()
     assert pythons('3.12,3.11,3.12') == ['3.12', '3.11']
     with pytest.raises(Exception, match=r"'3.10' is not among 3\.11, 3\.12, 3\.13"):
@@ -126,7 +126,7 @@ def test_each_pin_has_its_hashes():
 
 
 @pytest.mark.parametrize('uv', [True, False])
-def test_what_installs_is_told_of_no_other_place(uv, monkeypatch, tmp_path):
+def test_an_offline_installation_uses_only_the_folder_of_wheels(uv, monkeypatch, tmp_path):
     commands = []
     monkeypatch.setattr(Installer, 'run', lambda self, *command, **_: commands.append(command))
     installer = Installer(Environment(tmp_path), {'PATH': ''}, 0, Path('/wheels'))
@@ -137,7 +137,7 @@ def test_what_installs_is_told_of_no_other_place(uv, monkeypatch, tmp_path):
     assert ('--offline --no-config' if uv else '--isolated') in command
 
 
-def test_a_folder_that_is_not_there_is_told_in_one_sentence():
+def test_a_missing_folder_of_wheels_is_reported_in_one_sentence():
     run = subprocess.run(
         [ROOT / 'course', '--offline', '/nowhere', 'lab'], capture_output=True, text=True
     )
@@ -173,7 +173,9 @@ def apart(course, environment, *command):
 @pytest.mark.isolation
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize('installer', ['pip', 'uv'])
-def test_the_bundle_is_set_up_and_builds_its_workspace(installer, wheels, tmp_path):
+def test_the_bundle_is_set_up_and_builds_its_workspace_without_a_network(
+    installer, wheels, tmp_path
+):
     environment = fresh_environment(tmp_path)
     assert bool(shutil.which('uv', path=environment['PATH'])) is False
     if installer == 'uv':
@@ -209,7 +211,7 @@ def offline(wheels, tmp_path_factory):
 @pytest.mark.slow
 @pytest.mark.isolation
 @pytest.mark.timeout(1800)
-def test_the_whole_course_is_set_up_and_validates(offline):
+def test_the_whole_course_is_set_up_and_validates_without_a_network(offline):
     validated = offline('validate', ROOT / 'solutions/02_joint_state/02_joint_state.ipynb')
     assert validated.returncode == 0, validated.stdout + validated.stderr
 
@@ -218,7 +220,7 @@ def test_the_whole_course_is_set_up_and_validates(offline):
 @pytest.mark.isolation
 @pytest.mark.timeout(1800)
 @pytest.mark.skipif(bool(build_tools.missing()), reason='there is no compiler, or no CMake')
-def test_the_whole_course_builds_its_interfaces(offline):
+def test_the_whole_course_builds_its_interfaces_without_a_network(offline):
     assert offline('workspace').returncode == 0
     built = offline('ros-shell', '-c', BUILD.format(*['arm_interfaces'] * 2))
     assert built.returncode == 0, built.stderr

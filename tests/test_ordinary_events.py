@@ -55,7 +55,7 @@ def released(tmp_path_factory):
 
 @pytest.fixture
 def course(released, tmp_path, monkeypatch, run_now):
-    """A course of its own; in the rooms' place, a look at the answer's text."""
+    """A course for each test; answers are judged by their text and not run in rooms."""
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         by_id = {grade_id(cell): cell for cell in notebook.cells if grade_id(cell)}
@@ -113,9 +113,7 @@ def changed(out):
 
 
 @pytest.mark.slow
-def test_a_check_that_was_wrong_is_fixed_after_the_class_has_been_graded(
-    course, tmp_path, capsys, run_now
-):
+def test_a_check_can_be_fixed_after_the_class_was_graded(course, tmp_path, capsys, run_now):
     collect(course, tmp_path)
     said(capsys, course, 'grade')
     assert run_now.count(TOY) == run_now.count(OTHER) == 3
@@ -149,7 +147,7 @@ def test_a_check_that_was_wrong_is_fixed_after_the_class_has_been_graded(
 
 
 @pytest.mark.slow
-def test_an_extension_takes_a_penalty_back_and_runs_nothing(course, tmp_path, capsys, run_now):
+def test_an_extension_removes_a_late_penalty_and_runs_no_answer(course, tmp_path, capsys, run_now):
     collect(course, tmp_path)
     (course.gradebook / FILE).write_text(LATE)
     said(capsys, course, 'grade')
@@ -166,7 +164,7 @@ def test_an_extension_takes_a_penalty_back_and_runs_nothing(course, tmp_path, ca
 
 
 @pytest.mark.slow
-def test_who_hands_in_again_late_keeps_the_earlier_grade_aside(course, tmp_path, capsys):
+def test_the_earlier_grade_is_kept_aside_after_a_late_second_submission(course, tmp_path, capsys):
     collect(course, tmp_path)
     said(capsys, course, 'grade')
     with zipfile.ZipFile(tmp_path / 'again.zip', 'w') as archive:

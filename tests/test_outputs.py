@@ -101,20 +101,20 @@ MALFORMED = [
 
 
 @pytest.mark.parametrize('message', MALFORMED)
-def test_what_is_no_output_is_passed_over(message):
+def test_a_malformed_output_is_ignored(message):
     run = run_of(message)
     assert (run.outputs, run.error) == ([], None)
 
 
-def test_of_a_pictures_metadata_only_its_size_is_kept():
+def test_only_size_and_alt_text_of_a_pictures_metadata_are_kept():
     about = {'image/png': {'width': 80, 'height': True, 'onload': 'x', 'alt': 'an arm'}, 'a': 5}
     run = run_of(display({'image/png': 'AA'}, metadata=about))
     assert run.outputs[0].metadata == {'image/png': {'width': 80, 'alt': 'an arm'}}
     assert run_of(display({'image/png': 'AA'}, metadata=7)).outputs[0].metadata == {}
 
 
-def test_of_what_is_no_picture_no_metadata_is_kept():
-    """Each kind that a student made up was an object of its own: with many, it got no zero."""
+def test_no_metadata_is_kept_for_an_output_without_a_picture():
+    """Each made-up kind became an object: with many of them, a student could avoid a zero."""
     about = {f'kind{n}': {} for n in range(1_000)} | {'image/png': {'width': 80}}
     run = run_of(display({'text/plain': 'x', 'kind1': 'y'}, metadata=about))
     assert run.outputs[0].metadata == {}
@@ -133,14 +133,14 @@ FLOODS = {
 
 
 @pytest.mark.parametrize('messages', FLOODS.values(), ids=FLOODS)
-def test_a_flood_is_bounded_and_counted(messages):
+def test_a_flood_of_outputs_is_bounded_and_counted(messages):
     run = run_of(*messages)
     run.close()
     assert len(str(run.outputs)) < MAX_OUTPUT_CHARACTERS + 3 * MAX_ERROR_CHARACTERS
     assert 'more characters of output were not kept]' in run.outputs[-1].text
 
 
-def test_what_was_dropped_is_counted_exactly():
+def test_dropped_characters_are_counted_exactly():
     run = run_of(stream('x' * MAX_OUTPUT_CHARACTERS), stream('y' * 1234))
     run.close()
     assert len(run.outputs[0].text) == MAX_OUTPUT_CHARACTERS - 100
@@ -153,7 +153,7 @@ def test_an_error_after_a_flood_is_not_lost():
     assert run.outputs[-1] is run.error
 
 
-def test_clearing_makes_room_again():
+def test_clearing_outputs_makes_room_for_new_outputs():
     run = run_of(stream('x' * MAX_OUTPUT_CHARACTERS))
     run.clear()
     run.keep(*stream('new'))
@@ -182,7 +182,7 @@ def test_a_cell_ran_to_its_end_only_when_the_kernel_says_so(state, messages, exp
     assert run.ran_to_end is expected
 
 
-def test_an_error_that_only_the_reply_tells_is_an_error():
+def test_an_error_in_the_reply_of_the_kernel_is_kept_once():
     run = run_of(stream('x'))
     run.conclude({'status': 'error', 'ename': 'CheckFailed', 'evalue': 'no', 'traceback': []})
     assert not run.ran_to_end
@@ -202,7 +202,7 @@ def test_an_error_that_only_the_reply_tells_is_an_error():
         (None, False),
     ],
 )
-def test_a_cell_that_asks_its_kernel_to_end_is_told_from_others(payload, leaves):
+def test_a_cell_that_asks_its_kernel_to_exit_is_recognised(payload, leaves):
     run = CellRun()
     run.conclude({'status': 'ok', 'payload': payload})
     assert (run.leaves, run.ending) == (leaves, 'it calls exit()' if leaves else '')
@@ -213,7 +213,7 @@ def shown(run, displays, data, display_id):
     displays.remember(content, run, run.keep('display_data', content))
 
 
-def test_a_display_is_updated_in_place_also_later():
+def test_an_update_changes_a_display_in_all_cells_that_show_it():
     displays, first, second = Displays(), CellRun(), CellRun()
     shown(first, displays, {'text/plain': 'old'}, 'a')
     shown(second, displays, {'text/plain': 'old'}, 'a')
@@ -236,7 +236,7 @@ BAD_UPDATES = [
 
 
 @pytest.mark.parametrize('content', BAD_UPDATES, ids=range(len(BAD_UPDATES)))
-def test_an_update_that_is_none_changes_nothing(content):
+def test_a_malformed_update_changes_no_display(content):
     displays, run = Displays(), CellRun()
     shown(run, displays, {'text/plain': 'old'}, 'a')
     displays.update(content)
@@ -254,7 +254,7 @@ def test_many_displays_cannot_grow_beyond_the_bound_together():
     assert len(str(run.outputs)) < 1.2 * MAX_OUTPUT_CHARACTERS
 
 
-def test_updates_in_place_for_ever_leave_room():
+def test_many_updates_of_a_display_leave_room_for_the_last_one():
     displays, run = Displays(), CellRun()
     shown(run, displays, {'text/plain': 'x'}, 'a')
     for number in range(100):
@@ -263,7 +263,7 @@ def test_updates_in_place_for_ever_leave_room():
     assert run.outputs[0].data['text/plain'].startswith('99')
 
 
-def test_a_large_update_of_many_displays_of_one_id_takes_no_longer_than_that_of_one():
+def test_a_large_update_of_many_displays_with_one_id_takes_under_2_s():
     displays, run = Displays(), CellRun()
     for _ in range(1_000):
         shown(run, displays, {'text/plain': 'x'}, 'a')

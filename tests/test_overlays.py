@@ -1,6 +1,6 @@
-"""Packages of interfaces that a workspace has built: which is used, and what is said of a bad one.
+"""Interface packages that a workspace has built: which one is used, how faults are reported.
 
-What is built here is the course's wheel, laid out as colcon would; test_colcon.py builds for real.
+The package in these tests is the course's wheel, laid out as by colcon; test_colcon.py builds one.
 """
 
 import json
@@ -61,7 +61,7 @@ class Built:
         )
 
     def variables(self, version=PYTHON):
-        """What its setup.bash sets."""
+        """The environment variables that its setup.bash sets."""
         clean = {
             name: value
             for name, value in os.environ.items()
@@ -88,7 +88,7 @@ class Built:
         return ros2('interface', 'show', f'{NAME}/srv/SolveIK', **self.variables())
 
     def again(self, folders=f'build/{NAME} install/{NAME}', option=''):
-        """The way out that each sentence ends with."""
+        """The remedy that each error and warning ends with."""
         return (
             f': build it again, with `cd "$ROS_WS" && rm -rf {folders} && colcon build {option}'
             f'--packages-select {NAME} && source install/setup.bash`'
@@ -100,7 +100,7 @@ def built(tmp_path):
     return Built(tmp_path / 'ros ws')
 
 
-def the_sentence(built, **variables):
+def error_of_import(built, **variables):
     """The error of an import, which is also that of `ros2`."""
     imported = built.python(f'import {NAME}.srv', **variables)
     assert imported.returncode == 1, imported.stdout
@@ -113,12 +113,12 @@ def the_sentence(built, **variables):
     return sentence.removeprefix(beginning)
 
 
-# --- which one is used ---------------------------------------------------------------------------
+# --- which package is used -----------------------------------------------------------------------
 
 
 @pytest.mark.starts
 @pytest.mark.parametrize('seed', range(6))
-def test_all_of_it_is_loaded_from_the_workspace(built, seed):
+def test_all_libraries_of_a_package_are_loaded_from_the_workspace(built, seed):
     # ROS's wheels put the folders of libraries into a set, whose order goes by this seed
     loaded = built.python(MAPPED, PYTHONHASHSEED=str(seed))
     assert (loaded.returncode, loaded.stderr) == (0, '')
@@ -128,7 +128,7 @@ def test_all_of_it_is_loaded_from_the_workspace(built, seed):
 
 
 @pytest.mark.starts
-def test_ros2_shows_the_one_in_the_workspace_and_says_nothing_of_a_sound_one(built):
+def test_ros2_shows_a_sound_package_of_the_workspace_without_a_warning(built):
     for file in (built.prefix / DEFINITION, built.workspace / f'src/{NAME}/srv/SolveIK.srv'):
         file.write_text(file.read_text() + '# mine\n')
     assert built.shown().out.endswith('# mine\n')
@@ -147,22 +147,22 @@ def test_the_libraries_of_a_robots_ros_stay_behind_those_of_the_wheels(built, tm
     assert order[-1].rstrip() == str(robot)
 
 
-def test_python_looks_at_it_before_the_wheels_start_python_again():
+def test_the_check_of_packages_runs_before_the_wheels_restart_python():
     (packages,) = Path(sys.prefix).glob('lib/python*/site-packages')
     names = sorted(file.name for file in packages.glob('*.pth'))  # site reads them in this order
     ours, theirs = 'my_robot_basics_sourced.pth', 'ros_wheels_bootstrapper.pth'
     assert names.index(ours) < names.index(theirs)
 
 
-# --- what is said of a bad one -------------------------------------------------------------------
+# --- faults of a built package -------------------------------------------------------------------
 
 
 @pytest.mark.starts
-def test_built_for_another_python(built):
+def test_a_package_built_for_another_python_is_reported(built):
     (built.prefix / 'lib' / PYTHON).rename(built.prefix / 'lib' / OTHER)
     variables = {'PYTHONPATH': built.variables(OTHER)['PYTHONPATH']}
     this = PYTHON.removeprefix('python')
-    assert the_sentence(built, **variables) == (
+    assert error_of_import(built, **variables) == (
         f'was built for Python 3.10, and this is Python {this}{built.again()}'
     )
 
@@ -177,32 +177,33 @@ def test_built_for_another_python(built):
         DEFINITION,
     ],
 )
-def test_half_built(built, file):
+def test_a_half_built_package_is_reported_with_the_missing_file(built, file):
     (built.prefix / file).unlink()
     if file.startswith(MODULES) and file.endswith('.so'):
         (built.modules / f'_{NAME}_s.ep.rosidl_typesupport_c.c').touch()  # colcon leaves it there
-    assert the_sentence(built) == f'is only half built, without {file}{built.again()}'
+    assert error_of_import(built) == f'is only half built, without {file}{built.again()}'
 
 
 @pytest.mark.starts
-def test_a_library_that_was_cut_short(built):
+def test_a_truncated_library_is_reported(built):
     file = f'lib/lib{NAME}__rosidl_typesupport_c.so'
     (built.prefix / file).write_bytes(b'')
     assert (
-        the_sentence(built) == f'is only half built: {file} is empty or cut short{built.again()}'
+        error_of_import(built)
+        == f'is only half built: {file} is empty or cut short{built.again()}'
     )
 
 
 @pytest.mark.starts
-def test_half_built_in_one_folder_with_all_packages(tmp_path):
+def test_a_half_built_package_in_a_merged_workspace_is_reported(tmp_path):
     built = Built(tmp_path / 'ros_ws', merged=True)
     (built.prefix / DEFINITION).unlink()
     again = built.again('build install', '--merge-install ')
-    assert the_sentence(built) == f'is only half built, without {DEFINITION}{again}'
+    assert error_of_import(built) == f'is only half built, without {DEFINITION}{again}'
 
 
 @pytest.mark.starts
-def test_a_command_that_needs_it_ends_with_the_sentence(built):
+def test_a_ros2_command_that_needs_a_half_built_package_ends_with_the_error(built):
     (built.prefix / f'lib/lib{NAME}__rosidl_generator_c.so').unlink()
     call = ros2('service', 'call', '/solve_ik', f'{NAME}/srv/SolveIK', **built.variables())
     sentence, *rest = call.err.splitlines()
@@ -211,8 +212,8 @@ def test_a_command_that_needs_it_ends_with_the_sentence(built):
     assert rest == [f'{NAME}/srv/SolveIK cannot be loaded, for the reason above']
 
 
-def runs_but_says(built):
-    """What an import says that goes well, and `ros2`: both say the same."""
+def warning_of_import(built):
+    """The warning of an import that succeeds, which is also that of `ros2`."""
     imported = built.python(f'import {NAME}.srv; print({NAME}.__file__)')
     assert Path(imported.stdout.strip()) == built.modules / '__init__.py'
     assert imported.stderr == built.shown().err
@@ -223,26 +224,26 @@ def runs_but_says(built):
 
 
 @pytest.mark.starts
-def test_older_than_its_sources(built):
+def test_a_package_older_than_its_sources_is_reported(built):
     (built.workspace / f'src/{NAME}/srv/SolveIK.srv').write_text('float64 x\n---\n')
-    assert runs_but_says(built) == (
+    assert warning_of_import(built) == (
         f'was built before srv/SolveIK.srv in src was changed{built.again()}'
     )
 
 
 @pytest.mark.starts
-def test_another_type_than_the_courses(built):
+def test_an_interface_that_differs_from_the_courses_is_reported(built):
     file = built.prefix / f'share/{NAME}/srv/SolveIK.json'
     described = json.loads(file.read_text())
     for each in described['type_hashes']:
         each['hash_string'] = 'RIHS01_' + 64 * '0'
     file.write_text(json.dumps(described))
-    said = runs_but_says(built)
+    said = warning_of_import(built)
     assert said.startswith('has another srv/SolveIK.srv than the course, so nodes that use it ')
     assert f'(./course workspace --refresh {NAME})' in said
 
 
-def test_a_package_that_the_course_has_not_is_compared_with_none(built):
+def test_a_package_that_the_course_does_not_have_is_not_compared(built):
     own = overlays.Overlay(built.prefix, NAME)
     assert own.difference() == ''
     for folder in ('share', 'lib'):
@@ -252,7 +253,7 @@ def test_a_package_that_the_course_has_not_is_compared_with_none(built):
 
 
 @pytest.mark.starts
-def test_a_folder_that_is_gone(built):
+def test_a_missing_install_folder_is_reported_and_the_courses_package_is_used(built):
     shutil.rmtree(built.workspace / 'install')
     sentence = (
         f'{built.prefix} is gone, and this terminal still looks for its package there: build the '
@@ -272,7 +273,7 @@ def test_a_folder_that_is_gone(built):
     )
 
 
-def test_a_folder_that_only_another_user_can_read(tmp_path, monkeypatch):
+def test_an_unreadable_install_folder_is_reported(tmp_path, monkeypatch):
     def refuse(path):
         raise PermissionError(13, 'Permission denied', str(path))
 
@@ -284,7 +285,7 @@ def test_a_folder_that_only_another_user_can_read(tmp_path, monkeypatch):
 
 
 @pytest.mark.starts
-def test_a_robots_own_packages_are_not_looked_at(built):
+def test_packages_that_belong_to_the_robot_are_not_checked(built):
     (built.workspace / 'install/.colcon_install_layout').unlink()  # as in /opt/ros
     (built.prefix / DEFINITION).unlink()
     assert ros2('topic', 'list', '--help', **built.variables()).err == ''
@@ -292,26 +293,26 @@ def test_a_robots_own_packages_are_not_looked_at(built):
 
 
 UNREADABLE = Path('/proc/self/mem')
-"""A file that nobody can read from its beginning, root neither."""
+"""A file that no user can read from its beginning, not even root."""
 
 
 @pytest.mark.starts
-def test_a_library_that_cannot_be_read(built):
+def test_an_unreadable_library_is_reported(built):
     library = built.prefix / f'lib/lib{NAME}__rosidl_typesupport_c.so'
     library.unlink()
     library.symlink_to(UNREADABLE)
-    assert the_sentence(built).startswith('cannot be read ([Errno 5] Input/output error), so')
+    assert error_of_import(built).startswith('cannot be read ([Errno 5] Input/output error), so')
 
 
 @pytest.mark.starts
-def test_a_list_of_definitions_that_is_no_text(built):
+def test_a_list_of_definitions_that_is_not_valid_utf_8_is_reported(built):
     (built.prefix / overlays.INDEX / NAME).write_bytes(b'srv/\xff.srv')
-    assert the_sentence(built).startswith(
+    assert error_of_import(built).startswith(
         "cannot be read ('utf-8' codec can't decode byte 0xff in position 4"
     )
 
 
-def test_a_package_whose_folder_cannot_be_read(built, monkeypatch):
+def test_an_unreadable_package_folder_raises_an_import_error(built, monkeypatch):
     def refuse(path):
         raise PermissionError(13, 'Permission denied', path)
 
@@ -322,24 +323,24 @@ def test_a_package_whose_folder_cannot_be_read(built, monkeypatch):
 
 @pytest.mark.starts
 @pytest.mark.parametrize('text', ['{', '[]', '{}', '{"type_hashes": [3]}', '{"type_hashes": 3}'])
-def test_a_description_that_is_broken(built, text):
+def test_a_broken_type_description_is_reported(built, text):
     file = f'share/{NAME}/srv/SolveIK.json'
     (built.prefix / file).write_text(text)
-    assert runs_but_says(built) == f'has a broken {file}{built.again()}'
+    assert warning_of_import(built) == f'has a broken {file}{built.again()}'
 
 
 @pytest.mark.starts
-def test_a_source_that_cannot_be_read(built):
+def test_an_unreadable_source_is_reported(built):
     source = built.workspace / f'src/{NAME}/srv/SolveIK.srv'
     source.unlink()
     source.symlink_to(UNREADABLE)
-    assert runs_but_says(built) == (
+    assert warning_of_import(built) == (
         f'cannot be compared with its sources ([Errno 5] Input/output error){built.again()}'
     )
 
 
 @pytest.mark.starts
-def test_a_definition_that_cannot_be_read(built):
+def test_an_unreadable_definition_is_reported_and_the_import_succeeds(built):
     (built.prefix / DEFINITION).unlink()
     (built.prefix / DEFINITION).mkdir()
     imported = built.python(f'import {NAME}.srv')
@@ -348,7 +349,7 @@ def test_a_definition_that_cannot_be_read(built):
 
 
 @pytest.mark.starts
-def test_an_old_copy_of_the_course_is_found_first(built, tmp_path):
+def test_faults_are_reported_also_if_an_old_copy_of_the_course_is_found_first(built, tmp_path):
     old = tmp_path / f'old/install/my_robot_basics/lib/{PYTHON}/site-packages/my_robot_basics'
     old.mkdir(parents=True)
     (old / '__init__.py').touch()
@@ -378,7 +379,7 @@ rclpy.spin(node)
 
 
 @pytest.mark.starts
-def test_the_doctor_ends_with_the_sentence(built):
+def test_the_topic_doctor_ends_with_the_error_about_a_half_built_package(built):
     (built.prefix / f'lib/lib{NAME}__rosidl_generator_c.so').unlink()
     with own_domain(), started(sys.executable, '-P', '-c', ASKER) as asker:
         assert asker.stdout.readline() == 'there\n'

@@ -43,13 +43,13 @@ def course(released, tmp_path):
 
 @pytest.fixture
 def worked_in(released):
-    """Somebody has written a package where students do."""
+    """The course with a package beside the released notebook, where students write theirs."""
     folder = make_package(released.root / 'notebooks' / LESSON)
     yield released
     shutil.rmtree(folder)
 
 
-def test_nothing_of_a_package_is_given_out(worked_in):
+def test_a_package_is_neither_released_nor_bundled(worked_in):
     assert (worked_in.root / 'solutions' / LESSON / PACKAGE / 'setup.py').is_file()
     assert release(worked_in) == []
     assert stale_or_leaking(worked_in) == []
@@ -59,7 +59,7 @@ def test_nothing_of_a_package_is_given_out(worked_in):
 
 
 @pytest.mark.slow
-def test_validate_builds_what_lies_beside_the_notebook(worked_in):
+def test_validate_builds_the_package_beside_the_notebook(worked_in):
     notebook = worked_in.release_path(LESSON)
     command = [sys.executable, '-P', '-m', 'my_robot_basics.validate', str(notebook)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -75,7 +75,7 @@ def test_validate_builds_what_lies_beside_the_notebook(worked_in):
 
 @pytest.fixture
 def seen(monkeypatch):
-    """What the worker was given of each submission, by path."""
+    """The files of each submission that the worker received, by path."""
     seen = []
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
@@ -89,7 +89,7 @@ def seen(monkeypatch):
     return seen
 
 
-def test_its_files_reach_the_worker_and_a_change_is_noticed(course, seen):
+def test_files_of_a_package_reach_the_worker_and_a_change_is_noticed(course, seen):
     place = course.folder('submitted', 'ada', LESSON)
     place.mkdir(parents=True)
     shutil.copy(course.release_path(LESSON), place)

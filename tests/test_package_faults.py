@@ -1,4 +1,4 @@
-"""What is wrong with a package, told in words: its build, its installation, its end."""
+"""Faults of a package, described in words: of its build, its installation and its end."""
 
 import signal
 import sys
@@ -20,12 +20,12 @@ def ended(code, *lines):
     return executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
 
 
-def test_a_race_of_rclpy_is_told_as_the_clean_end_that_it_is():
+def test_an_end_by_a_race_of_rclpy_is_reported_as_clean():
     assert ended(1, f'rclpy._rclpy_pybind11.RCLError: {RACE}') == ended(0)
     assert 'not cleanly (exit code 1, with KeyboardInterrupt)' in ended(1, 'KeyboardInterrupt')
 
 
-def test_of_a_crash_in_a_notebook_the_likely_cause_is_told_as_in_feedback():
+def test_a_crash_in_a_notebook_is_reported_with_the_same_cause_as_in_feedback():
     process = types.SimpleNamespace(code=-signal.SIGSEGV, lines=[])
     said = executables.how_it_ended(types.SimpleNamespace(process=process), None)
     assert said == f'had ended by itself (by SIGSEGV): {why_crashed(-signal.SIGSEGV)}'
@@ -34,14 +34,14 @@ def test_of_a_crash_in_a_notebook_the_likely_cause_is_told_as_in_feedback():
     assert said == f'had ended by itself (by signal {signal.SIGRTMIN + 1})'
 
 
-def test_of_a_crash_after_ctrl_c_a_thread_is_the_likely_cause():
+def test_a_crash_after_ctrl_c_is_attributed_to_a_thread_that_still_spins():
     process = types.SimpleNamespace(code=-signal.SIGSEGV, lines=[])
     said = executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
     assert 'if main returns while a thread still spins' in said
     assert 'a type that is not an action' not in said
 
 
-def test_try_shutdown_alone_may_meet_that_race_twice():
+def test_a_second_race_of_rclpy_is_clean_only_with_try_shutdown():
     first, last = 'Traceback (most recent call last):', f'rclpy._rclpy_pybind11.RCLError: {RACE}'
     once_too_often = [first, '    rclpy.shutdown()', last]
     assert is_clean(1, once_too_often)
@@ -49,7 +49,7 @@ def test_try_shutdown_alone_may_meet_that_race_twice():
     assert is_clean(1, [first, '    rclpy.try_shutdown()', last], is_second=True)
 
 
-def test_of_many_lines_the_error_is_told():
+def test_the_error_is_picked_from_the_output_of_colcon():
     words = (
         'Starting >>> greeter\n--- stderr: greeter\nTraceback (most recent call last):\n'
         '  File "<string>", line 1, in <module>\n'

@@ -40,7 +40,7 @@ def test_a_new_package_is_taken_as_it_is(folder):
         ('a/b/c/d/e/f/g/h/i', 'more than 8 folders deep'),
     ],
 )
-def test_what_is_left_out_is_named_with_its_reason(folder, path, reason):
+def test_a_file_that_is_left_out_is_named_with_the_reason(folder, path, reason):
     (folder / path).parent.mkdir(parents=True, exist_ok=True)
     (folder / path).write_text('')
     found = read(folder)
@@ -68,7 +68,7 @@ def test_no_link_is_followed_and_no_device_read(folder):
     ]
 
 
-def test_too_many_files_are_not_taken_in_part(folder):
+def test_a_package_with_too_many_files_is_not_taken_in_part(folder):
     (folder / 'data').mkdir()
     for number in range(MAX_FILES):
         (folder / 'data' / f'{number}').touch()
@@ -80,13 +80,13 @@ def test_too_many_files_are_not_taken_in_part(folder):
     )
 
 
-def test_nor_too_large_ones(folder):
+def test_a_package_that_is_too_large_is_refused(folder):
     with (folder / 'mesh.stl').open('wb') as file:
         file.truncate(MAX_BYTES + 1)
     assert 'it has 2.0 MB, and at most 2 MB are taken' in read(folder).problem
 
 
-def test_ten_thousand_folders_are_given_up(folder, monkeypatch):
+def test_a_package_with_a_huge_number_of_entries_is_refused(folder, monkeypatch):
     monkeypatch.setattr(package_files, 'MOST_SEEN', 10)
     (folder / 'x').mkdir()
     for number in range(10):
@@ -94,7 +94,7 @@ def test_ten_thousand_folders_are_given_up(folder, monkeypatch):
     assert read(folder).problem == 'it has more than 10 files and folders'
 
 
-def test_what_became_a_link_meanwhile_is_not_read(folder):
+def test_a_file_that_became_a_link_meanwhile_is_not_read(folder):
     found = read(folder)
     (folder / 'setup.py').unlink()
     (folder / 'setup.py').symlink_to('/etc/passwd')
@@ -102,7 +102,7 @@ def test_what_became_a_link_meanwhile_is_not_read(folder):
         package_files.write(found.taken, folder.parent / 'copy')
 
 
-def test_what_imports_leave_is_left_out_without_a_word(tmp_path):
+def test_bytecode_files_are_left_out_without_a_note(tmp_path):
     for name in ('greeter/a.py', 'greeter/__pycache__/a.cpython-311.pyc'):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text('')

@@ -21,13 +21,13 @@ def graded(folder, *, theirs='', **checks):
 
 
 def test_a_right_package_passes_and_no_cell_of_the_students_is_run(tmp_path):
-    """Nor one that binds a name for want of which something fails."""
+    """Not even a cell that binds a name whose absence makes a check fail."""
     verdicts = graded(make_package(tmp_path), theirs='reset = package = 1 / 0')
     assert verdicts == {'builds': ('passed', ''), 'runs': ('passed', '')}
 
 
 @pytest.mark.slow
-def test_no_package_and_a_wrong_one_are_told(tmp_path):
+def test_a_missing_package_and_a_wrong_one_are_reported(tmp_path):
     verdicts = graded(None)
     assert {outcome for outcome, _ in verdicts.values()} == {'failed'}
     assert 'there is no folder greeter/ beside this notebook' in verdicts['builds'][1]
@@ -39,8 +39,8 @@ def test_no_package_and_a_wrong_one_are_told(tmp_path):
 
 
 @pytest.mark.slow
-def test_no_cell_of_the_students_comes_in_for_a_name_that_is_missing(tmp_path):
-    """One that would answer for the build, and binds what colcon says is not defined."""
+def test_no_cell_of_the_student_is_run_to_define_a_missing_name(tmp_path):
+    """The cell would forge the answer of the build, and binds the name that colcon misses."""
     forger = (
         'x = 1\n'
         'from my_robot_basics.live import packages\n'
@@ -83,7 +83,9 @@ ORDINARY = ('kills colcon',)
         for name, code in HOSTILE.items()
     ],
 )
-def test_a_hostile_setup_earns_nothing_and_harms_nobody(tmp_path, monkeypatch, code):
+def test_a_hostile_setup_py_earns_no_points_and_adds_no_files_to_the_submission(
+    tmp_path, monkeypatch, code
+):
     monkeypatch.setattr(budget, 'BUILD_TIMEOUT_SEC', 30.0)
     folder = make_package(tmp_path, **{'setup.py': f'import os, time\n{code}\n'})
     verdicts = graded(folder)
@@ -103,8 +105,8 @@ def test_a_build_that_takes_too_long_is_left_to_a_person(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_colcons_claim_earns_no_point_for_what_must_be_seen(tmp_path):
-    """A build that claims all, with an executable that does nothing."""
+def test_a_successful_build_earns_no_points_for_an_executable_without_a_node(tmp_path):
+    """The build succeeds, and its executable starts no node."""
     verdicts = graded(make_package(tmp_path, node='def main():\n    input()\n'))
     assert verdicts['builds'] == ('passed', '')
     outcome, reason = verdicts['runs']

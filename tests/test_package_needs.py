@@ -1,4 +1,4 @@
-"""What a package imports, and its package.xml does not name."""
+"""ROS packages that a package imports, but its package.xml does not name."""
 
 import pytest
 from my_robot_basics.live.package_needs import unnamed_needs
@@ -8,7 +8,7 @@ from package_maker import NODE, PACKAGE, make_package
 
 @pytest.fixture
 def needs(tmp_path):
-    """Return a function that makes the package of `make_package` with changes, and asks."""
+    """Return a function that makes a package with changes and returns its unnamed needs."""
 
     def of(**changes):
         make_package(tmp_path, **changes)
@@ -17,11 +17,11 @@ def needs(tmp_path):
     return of
 
 
-def test_a_package_that_names_what_it_imports_needs_nothing(needs):
+def test_a_package_that_names_all_its_imports_is_not_reported(needs):
     assert needs() == ()
 
 
-def test_each_ros_package_that_is_not_named_is_told_once(needs):
+def test_each_unnamed_ros_package_is_reported_once(needs):
     code = f'from sensor_msgs.msg import JointState\nimport arm_interfaces.srv as srv\n{NODE}'
     arm, joints = needs(node=code, **{'greeter/more.py': 'import sensor_msgs'})
     assert arm == (

@@ -26,7 +26,7 @@ def test_an_answer_comes_back_as_json():
     assert parse('os:getpid') != os.getpid()
 
 
-def test_what_a_reader_prints_is_no_answer():
+def test_the_output_of_a_reader_is_not_taken_as_its_answer():
     assert parse('builtins:print', '{"answer": 1}') is None
 
 
@@ -42,25 +42,25 @@ def test_what_a_reader_prints_is_no_answer():
         (('builtins:object',), 'TypeError: Object of type object is not JSON serializable'),
     ],
 )
-def test_what_can_t_be_read_costs_one_question(question, why):
+def test_a_question_that_fails_does_not_affect_the_next_question(question, why):
     with pytest.raises(ParsingFailed, match=why):
         parse(*question, limits=SHORT)
     assert parse('json:loads', '1') == 1
 
 
-def test_who_waits_for_ever_is_ended_by_the_clock():
+def test_a_question_that_waits_for_ever_ends_at_the_time_limit():
     with pytest.raises(ParsingFailed, match=r'it takes over 1 s$'):
         parse('time:sleep', 1_000, limits=Limits(wall_sec=1))
 
 
-def test_an_answer_that_is_too_long_is_none(monkeypatch):
+def test_an_answer_that_is_too_long_is_refused(monkeypatch):
     with pytest.raises(ParsingFailed, match='too long an answer'):
         parse('operator:mul', 'a', parsing.MAX_ANSWER_BYTES + 1)
 
 
 @pytest.mark.starts
-def test_an_answer_that_is_too_long_is_none_of_a_process_that_has_ended(monkeypatch):
-    """Where the rest of it fits into the pipe, the process needs no signal to end."""
+def test_a_too_long_answer_of_a_process_that_has_ended_is_refused(monkeypatch):
+    """If the rest of the answer fits into the pipe, the process ends without a signal."""
     monkeypatch.setattr(parsing_process, 'MAX_ANSWER_BYTES', 10)
     monkeypatch.setattr(os, 'kill', lambda *_: None)
     answers = io.BytesIO()
@@ -69,7 +69,7 @@ def test_an_answer_that_is_too_long_is_none_of_a_process_that_has_ended(monkeypa
     assert 'too long an answer' in json.loads(answers.getvalue())['why']
 
 
-def test_a_full_disk_is_not_the_text_s_fault():
+def test_an_error_of_the_operating_system_is_not_blamed_on_the_text():
     with pytest.raises(FileNotFoundError):
         parse('os:listdir', '/nowhere')
 
@@ -88,7 +88,7 @@ def test_two_questions_are_answered_side_by_side(tmp_path):
         assert all(isinstance(end.result(), int) for end in ends)
 
 
-def test_what_is_called_off_ends_and_the_next_one_is_answered():
+def test_a_cancelled_question_ends_and_the_next_question_is_answered():
     with ThreadPoolExecutor(1) as threads:
         waiting = threads.submit(parse, 'time:sleep', 60, limits=Limits(wall_sec=20))
         while not parsing._SERVERS._busy:
@@ -99,7 +99,7 @@ def test_what_is_called_off_ends_and_the_next_one_is_answered():
     assert parse('json:loads', '1') == 1
 
 
-def test_what_all_answers_need_is_made_once_before():
+def test_page_templates_of_all_languages_are_loaded_once():
     page._template.cache_clear()
     for _ in range(2):
         assert parsing_process._function('grader.report.page:page') is page.page
@@ -107,7 +107,7 @@ def test_what_all_answers_need_is_made_once_before():
     page._template.cache_clear()
 
 
-def test_questions_of_several_threads_are_answered_in_turn():
+def test_several_threads_receive_the_answers_to_their_own_questions():
     found = {}
     threads = [
         threading.Thread(target=lambda n=n: found.update({n: parse('operator:neg', n)}))
@@ -120,7 +120,7 @@ def test_questions_of_several_threads_are_answered_in_turn():
     assert found == {n: -n for n in range(8)}
 
 
-def test_a_process_that_is_gone_is_no_student_s_fault(monkeypatch):
+def test_an_ended_parsing_process_is_an_error_of_the_course_and_is_replaced(monkeypatch):
     monkeypatch.setattr(parsing, 'COMMAND', ('true',))
     server = parsing._Server()
     with pytest.raises((CourseError, BrokenPipeError)):

@@ -1,4 +1,4 @@
-"""Some of a check's points: the same in the gradebook, on the page, in tables, and once more."""
+"""Partial points of a check: the same in the gradebook, page, tables, report and replay."""
 
 import csv
 import json
@@ -36,13 +36,13 @@ async def half_a_point(notebook, *, extra_files=(), seed='', trust_students=Fals
     return Execution(notebook=notebook, verdicts=(), notes=())
 
 
-def test_it_is_stored_and_holds(course):
+def test_a_partial_score_is_stored_and_reused(course):
     (row,) = grade_all(course, find_submissions(course))
     assert row.reused
     assert (row.stored.score, row.stored.max_score, row.stored.reason) == (1.5, 5.0, REASON)
 
 
-def test_the_tables_have_it(course):
+def test_the_table_of_scores_contains_a_partial_score(course):
     assert main(['scores'], course=course) == 0
     rows = {
         row['grade_id']: row
@@ -52,7 +52,7 @@ def test_the_tables_have_it(course):
     assert 'saw 1 wrong' in rows['double-hidden']['comment']
 
 
-def test_the_page_tells_it_once(course):
+def test_the_feedback_page_shows_a_partial_score_once(course):
     assert main(['feedback'], course=course) == 0
     (page,) = course.folder('feedback', '', '').rglob('*.html')
     text = page.read_text(encoding='utf-8')
@@ -62,12 +62,12 @@ def test_the_page_tells_it_once(course):
     assert text.count('saw 1 wrong') == 1
 
 
-def test_the_report_counts_it_among_what_is_missing(course):
+def test_the_report_lists_the_reason_of_a_partial_score(course):
     report = max((course.gradebook / 'runs').glob('*/report.json'))
     found = json.loads(report.read_text(encoding='utf-8'))
     assert [each['example'] for each in found['reasons']] == [REASON]
 
 
-def test_a_replay_finds_it_as_stored(course, capsys):
+def test_a_replay_gives_the_stored_partial_score_again(course, capsys):
     assert main(['grade', '--student', 'ada', '--seed', 'recorded'], course=course) == 0
     assert 'double-hidden  partial: expected 4 right' in capsys.readouterr().out

@@ -73,7 +73,7 @@ def canvas(course, *arguments):
     return table(course.gradebook / 'canvas' / '03_publisher.csv')
 
 
-def test_a_sum_of_tenths_is_in_tenths():
+def test_a_sum_of_tenths_has_no_rounding_error():
     (scores,) = final_scores(cell('ada', score, name=str(score)) for score in (0.7, 0.1, 0.1))
     assert scores.final[0].score == 0.9
 
@@ -106,7 +106,9 @@ def test_moodles_worksheet_needs_no_roster_where_the_numbers_came_with_the_submi
     assert 'Dan' not in said
 
 
-def test_moodles_own_worksheet_keeps_its_columns_and_names_who_has_no_row(course, roster, capsys):
+def test_moodles_own_worksheet_keeps_its_columns_and_missing_rows_are_reported(
+    course, roster, capsys
+):
     head = 'Identifier,Full name,Email address,Grade,Maximum Grade,Last modified (grade)'
     rows = moodle(
         course,
@@ -147,7 +149,7 @@ def test_canvas_gets_the_columns_up_to_the_section_and_one_of_scores(course, ros
     assert 'Bob' not in capsys.readouterr().out
 
 
-def test_a_row_that_ends_early_has_nothing_in_its_last_columns(course, roster):
+def test_a_row_that_ends_early_has_empty_last_columns(course, roster):
     """As if a roster was edited by hand: a spreadsheet leaves out empty cells."""
     canvas_rows = canvas(
         course, '--roster', roster('Student,ID,Section', 'Class of 2026', 'Bob,2')
@@ -158,7 +160,7 @@ def test_a_row_that_ends_early_has_nothing_in_its_last_columns(course, roster):
     assert moodle_rows == [head.split(','), ['Participant 8002', 'Bob', '1.0', '']]
 
 
-def test_canvas_without_a_roster_is_told_numbers(course, capsys):
+def test_the_canvas_file_without_a_roster_uses_the_collected_numbers(course, capsys):
     assert canvas(course) == [
         ['Student', 'ID', 'Section', '03_publisher'],
         ['Ada Lovelace', '18151', '', '3.5'],
@@ -170,7 +172,7 @@ def test_canvas_without_a_roster_is_told_numbers(course, capsys):
     ) in capsys.readouterr().out
 
 
-def test_a_platform_that_knows_nobody_of_a_class_gets_no_file(course, capsys):
+def test_no_file_is_written_if_no_student_has_a_number_of_the_platform(course, capsys):
     (course.gradebook / 'numbers.json').unlink()
     assert main(['scores', '--format', 'canvas'], course=course) == 0
     captured = capsys.readouterr()
@@ -245,7 +247,7 @@ def test_a_roster_that_does_not_fit_is_refused_in_a_sentence(
         ),
     ],
 )
-def test_what_is_missing_is_said(arguments, said, course, capsys):
+def test_arguments_that_do_not_suffice_for_an_export_are_reported(arguments, said, course, capsys):
     assert main(['scores', *arguments], course=course) != 0
     assert said in capsys.readouterr().err
 
@@ -281,7 +283,7 @@ def test_feedback_goes_back_under_the_names_that_moodle_gave_out(course, capsys)
 
 
 @pytest.mark.parametrize('asked', [['scores', '--format'], ['feedback', '--zip']])
-def test_that_no_file_was_written_is_said(tmp_path, capsys, asked):
+def test_a_message_says_that_no_file_was_written(tmp_path, capsys, asked):
     course = released_course(tmp_path)
     assert main([*asked, 'moodle'], course=course) == 0
     said = capsys.readouterr()
@@ -297,7 +299,7 @@ def test_an_underscore_in_a_name_does_not_shift_the_number():
     assert name.split('_', 4)[1:] == ['8001', 'assignsubmission', 'file', '03_publisher.html']
 
 
-def test_what_moodle_gave_out_is_collected_graded_and_goes_back(tmp_path, capsys):
+def test_a_download_of_moodle_is_collected_graded_and_exported(tmp_path, capsys):
     course = released_course(tmp_path)
     submit(course, 'x', answered(course, 'def double(x):\n    return x + x'))
     taken = course.folder('submitted', 'x', TOY)

@@ -1,4 +1,4 @@
-"""What a test replaces in a module is there: a slow test of a name that has moved fails unseen."""
+"""Names that tests patch exist: if a name has moved, a slow test would fail unnoticed."""
 
 import ast
 import importlib
@@ -12,7 +12,7 @@ FILES = sorted(path for path in HERE.glob('*.py') if 'monkeypatch.setattr(' in p
 
 
 def imported(tree):
-    """Return what a file knows of ours: the full name of each module, or of what is in one."""
+    """Return the full names of our modules, and of names from them, that a file imports."""
     known = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or '').split('.')[0] in OURS:
@@ -55,11 +55,11 @@ def is_there(name):
 
 
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.stem)
-def test_what_a_test_replaces_is_there(path):
+def test_each_name_that_a_test_patches_exists(path):
     assert [name for name in patched(ast.parse(path.read_text())) if not is_there(name)] == []
 
 
-def test_a_name_that_has_moved_is_found():
+def test_a_patched_name_that_does_not_exist_is_found():
     text = "from my_robot_basics.checks import passage\nmonkeypatch.setattr(passage, 'NEVER', 1)"
     (name,) = patched(ast.parse(text))
     assert name == 'my_robot_basics.checks.passage.NEVER'

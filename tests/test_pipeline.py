@@ -27,7 +27,7 @@ def course(tmp_path_factory):
 
 
 @pytest.mark.parametrize('name', NAMES)
-def test_what_is_healed_from_a_prepared_master_is_prepared(name, course, tmp_path):
+def test_restoring_from_a_prepared_template_equals_preparing_afterwards(name, course, tmp_path):
     assignment = assignment_of(PATHS[name])
     (tmp_path / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
     submission = read_submission(tmp_path, student_id='ada', assignment=assignment)

@@ -1,4 +1,4 @@
-"""What to run of a lesson before one of its exercises is judged."""
+"""Which cells of a lesson run before one of its exercises is judged."""
 
 import time
 
@@ -73,7 +73,7 @@ PLANS = {
 
 
 @pytest.mark.parametrize(('own', 'expected'), PLANS.values(), ids=PLANS)
-def test_plans_begin_with_the_least_that_can_do(own, expected):
+def test_plans_begin_with_the_fewest_cells_that_may_suffice(own, expected):
     notebook = lesson(**own)
     found = list(plans(notebook, find_exercises(notebook)[0]))
     assert [plan.why for plan in found] == expected
@@ -124,7 +124,7 @@ BORROWED = {
 
 
 @pytest.mark.parametrize(('area', 'expected'), BORROWED.values(), ids=BORROWED)
-def test_what_the_lesson_shows_is_run_for_the_names_that_an_answer_needs(area, expected):
+def test_demonstrations_that_bind_names_of_an_answer_are_run(area, expected):
     template = make_template(nbformat.from_dict(SHOWN), nbformat.from_dict(SHOWN))
     submitted = nbformat.from_dict(SHOWN)
     next(
@@ -141,7 +141,7 @@ def test_what_the_lesson_shows_is_run_for_the_names_that_an_answer_needs(area, e
     'area',
     ['def area(r): return eval("np")', 'area = lambda r: globals()["np"]', 'import __main__ as m'],
 )
-def test_all_that_is_shown_before_runs_first_where_names_are_looked_up_by_other_means(area):
+def test_all_earlier_demonstrations_run_if_an_answer_looks_names_up_indirectly(area):
     notebook = lesson(area=area, at_start='early = 1', at_end='late = 2')
     exercise, _ = find_exercises(notebook)
     first = next(plans(notebook, exercise))
@@ -161,7 +161,7 @@ def test_all_that_is_shown_before_runs_first_where_names_are_looked_up_by_other_
         ('area', None),
     ],
 )
-def test_cells_that_bind_a_name_which_was_missing_run_with_all_that_is_shown(name, expected):
+def test_a_plan_for_missing_names_adds_the_cells_that_bind_them(name, expected):
     notebook = lesson(area='area = 1', at_end='late = 2')
     exercise, _ = find_exercises(notebook)
     plan = plan_for_names(notebook, exercise, next(plans(notebook, exercise)), {name})
@@ -172,7 +172,7 @@ def test_cells_that_bind_a_name_which_was_missing_run_with_all_that_is_shown(nam
         assert sorted(sources(notebook, plan)) == sorted([*expected, *own])
 
 
-def test_a_helper_that_is_lent_brings_what_it_needs_along():
+def test_a_lent_helper_brings_the_demonstrations_that_it_needs():
     notebook = lesson(area='def area(r): return h(r)', at_start='def h(r): return shown')
     first = next(plans(notebook, find_exercises(notebook)[0]))
     assert first.why == LENT
@@ -180,7 +180,7 @@ def test_a_helper_that_is_lent_brings_what_it_needs_along():
 
 
 @pytest.mark.timeout(60)
-def test_shown_cells_that_need_one_another_are_run_once():
+def test_demonstrations_that_need_one_another_are_run_once():
     notebook = lesson(area='area = ping')
     [ping] = [cell for cell in notebook.cells if cell.source == 'shown = 1']
     pong = nbformat.from_dict(ping)
@@ -191,7 +191,7 @@ def test_shown_cells_that_need_one_another_are_run_once():
     assert shown == ['pong = ping', 'ping = pong']
 
 
-def test_many_cells_that_each_need_the_next_one_take_no_time():
+def test_a_chain_of_700_cells_is_planned_within_a_second():
     notebook = lesson(area='def area(r): return v0', at_start='# many')
     [many] = [cell for cell in notebook.cells if cell.source == '# many']
     at = notebook.cells.index(many)
@@ -201,7 +201,7 @@ def test_many_cells_that_each_need_the_next_one_take_no_time():
         cell.source = f'v{number} = v{number + 1}\n{more}'
         notebook.cells.insert(at, cell)
     found = list(plans(notebook, find_exercises(notebook)[0]))
-    began = time.process_time()  # all texts have been read
+    began = time.process_time()  # all texts have been read before
     assert list(plans(notebook, find_exercises(notebook)[0])) == found
     assert time.process_time() - began < 1.0
     assert [plan.why for plan in found] == [LENT, WHOLE]
@@ -212,7 +212,7 @@ def sources(notebook, plan):
     return [notebook.cells[i].source for i in plan.cells]
 
 
-def test_what_each_plan_runs():
+def test_each_plan_runs_the_expected_cells_in_order():
     notebook = lesson(at_start='early = 1', at_end='late = 2')
     alone, others, whole = (
         sources(notebook, p) for p in plans(notebook, find_exercises(notebook)[1])
@@ -265,9 +265,7 @@ LATE = {
 
 
 @pytest.mark.parametrize(('node', 'below', 'is_late'), LATE.values(), ids=LATE)
-def test_what_starts_an_answer_runs_again_where_a_name_that_it_needs_comes_later(
-    node, below, is_late
-):
+def test_the_run_cell_runs_again_if_a_name_of_the_answer_is_bound_later(node, below, is_late):
     notebook = lesson(node=node, at_end=below)
     exercise = find_exercises(notebook)[1]
     for plan in plans(notebook, exercise):
@@ -275,19 +273,19 @@ def test_what_starts_an_answer_runs_again_where_a_name_that_it_needs_comes_later
             assert plan.again == (exercise.run if is_late else ())
 
 
-def test_a_helper_above_that_needs_one_below_counts_as_below():
+def test_a_helper_that_needs_a_later_helper_counts_as_later():
     notebook = lesson(node='x = above', at_start='def above(): return below', at_end='below = 1')
     exercise = find_exercises(notebook)[1]
     assert [plan.again for plan in plans(notebook, exercise)] == [exercise.run] * 2
 
 
-def test_a_helper_both_above_and_below_is_there():
+def test_a_helper_bound_both_earlier_and_later_does_not_count_as_later():
     notebook = lesson(node='x = helper', at_start=HELPER, at_end='helper = 3')
     exercise = find_exercises(notebook)[1]
     assert {plan.again for plan in plans(notebook, exercise)} == {()}
 
 
-def test_names_that_turn_out_to_be_needed_may_come_later_too():
+def test_the_run_cell_runs_again_if_a_missing_name_is_bound_later():
     notebook = lesson(node='x = getattr(m, "late")', at_end='late = 2')
     exercise = find_exercises(notebook)[1]
     plan = plan_for_names(notebook, exercise, next(plans(notebook, exercise)), {'late'})
@@ -314,7 +312,7 @@ def test_a_cell_that_may_bind_any_name_is_lent(lender):
         ({'at_start': '%%time\ntau = 2'}, True),
     ],
 )
-def test_a_name_is_misspelled_where_no_other_cell_may_bind_it(cells, is_misspelled):
+def test_a_name_counts_as_misspelled_if_no_other_cell_may_bind_it(cells, is_misspelled):
     notebook = lesson(**cells)
     exercise = find_exercises(notebook)[0]
     assert are_misspelled({'tua'}, notebook, exercise) == is_misspelled

@@ -16,7 +16,7 @@ async def raised():
     raise OSError('no room')
 
 
-def test_results_and_exceptions_come_back():
+def test_futures_return_results_and_raise_exceptions():
     with Pool(2) as pool:
         fine, broken = pool.submit(returned, 7), pool.submit(raised)
         assert fine.result() == 7
@@ -25,7 +25,7 @@ def test_results_and_exceptions_come_back():
 
 
 @pytest.mark.parametrize('in_flight', [1, 3])
-def test_no_more_run_at_a_time_than_asked_for(in_flight):
+def test_a_pool_runs_at_most_the_given_number_of_tasks_at_a_time(in_flight):
     running, most = 0, 0
 
     async def work():
@@ -41,7 +41,7 @@ def test_no_more_run_at_a_time_than_asked_for(in_flight):
     assert most == in_flight
 
 
-def test_leaving_cancels_what_runs_and_what_waits_and_lets_it_clean_up():
+def test_leaving_a_pool_cancels_all_tasks_and_lets_them_clean_up():
     begun, cleaned = threading.Event(), []
 
     async def work(name):
@@ -61,7 +61,7 @@ def test_leaving_cancels_what_runs_and_what_waits_and_lets_it_clean_up():
     assert 'pool' not in {thread.name for thread in threading.enumerate()}
 
 
-def test_ctrl_c_while_it_cleans_up_leaves_nothing_behind(capsys):
+def test_ctrl_c_does_not_interrupt_the_cleanup_of_tasks(capsys):
     begun, cleaned = threading.Event(), []
 
     async def work():
@@ -82,7 +82,7 @@ def test_ctrl_c_while_it_cleans_up_leaves_nothing_behind(capsys):
     assert signal.getsignal(signal.SIGINT) is former
 
 
-def test_it_works_inside_a_running_event_loop():
+def test_a_pool_works_inside_a_running_event_loop():
     async def outer():
         with Pool(2) as pool:
             return pool.submit(returned, 'inner').result()

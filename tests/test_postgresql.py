@@ -38,7 +38,7 @@ def without_words(table):
 
 @pytest.mark.isolation
 @pytest.mark.timeout(3600)
-def test_the_sample_class_gets_the_same_scores_check_by_check(tmp_path, url, capsys):
+def test_the_sample_class_receives_the_same_scores_as_in_sqlite(tmp_path, url, capsys):
     found = []
     for name in ('sqlite', 'postgresql'):
         course = Course(root=ROOT, gradebook=tmp_path / name)
@@ -61,7 +61,9 @@ def test_the_sample_class_gets_the_same_scores_check_by_check(tmp_path, url, cap
     assert PASSWORD not in ''.join(capsys.readouterr())
 
 
-def test_the_tables_are_those_of_sqlite_and_made_by_one_of_several(course, tmp_path, postgresql):
+def test_the_tables_equal_those_of_sqlite_if_several_threads_make_them(
+    course, tmp_path, postgresql
+):
     started = [threading.Thread(target=make_database, args=[course]) for _ in range(4)]
     for each in started:
         each.start()
@@ -115,7 +117,7 @@ def tables_named(course):
 
 
 @pytest.mark.isolation
-def test_nbgraders_own_commands_and_its_formgrader_use_it(course):
+def test_nbgraders_commands_and_formgrader_use_the_postgresql_gradebook(course):
     submit(course, 'ada', answered(course, 'def double(x):\n    return 2 * x', explained='so'))
     submit(course, 'bob', answered(course, 'def double(x):\n    return 3 * x'))
     for command in (['autograde', TOY], ['generate_feedback', TOY], ['export', '--to', 't.csv']):

@@ -1,4 +1,4 @@
-"""Dumps of a gradebook in PostgreSQL, and the way back."""
+"""Dumps of a gradebook in PostgreSQL, and how they are restored."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ def address_of(course):
     return course.db_url.replace('+psycopg', '').partition('?')[0]
 
 
-def test_a_dump_is_made_once_for_each_state_and_brings_it_back(course, postgresql):
+def test_a_dump_is_made_once_for_each_state_and_can_be_restored(course, postgresql):
     assert back_up(course) is None  # there is nothing yet
     register(course, TOY)
     with transaction(course.db_url) as book:
@@ -49,7 +49,9 @@ def test_a_dump_is_made_once_for_each_state_and_brings_it_back(course, postgresq
     assert back_up(course) not in (first, second)
 
 
-def test_without_pg_dump_the_run_goes_on_and_says_so(course, monkeypatch, tmp_path, capsys):
+def test_a_missing_or_failing_pg_dump_is_reported_and_shows_no_password(
+    course, monkeypatch, tmp_path, capsys
+):
     register(course, TOY)
     monkeypatch.setenv('PATH', str(tmp_path))
     assert back_up(course) is None

@@ -74,13 +74,13 @@ def give_by_hand(course, student, points, comment):
 
 
 class Journey:
-    """Does the same in two courses, and sees that it comes to the same."""
+    """Does the same in two courses, and asserts that the results are equal."""
 
     def __init__(self, courses, capfd):
         self.courses, self.capfd = courses, capfd
 
     def run(self, *verb):
-        """Call a verb; return what both have said."""
+        """Call a verb in both courses; return their output, which has to be equal."""
         found = []
         for course in self.courses:
             with serving_desk.stood_in():
@@ -97,13 +97,13 @@ class Journey:
         assert [each for each in done if 'Traceback' in each.stderr] == []
 
     def file(self, name):
-        """Return a file that both have, as text."""
+        """Return the text of a file, which has to be the same in both courses."""
         texts = [(course.root / name).read_bytes() for course in self.courses]
         assert texts[0] == texts[1]
         return texts[0].decode('utf-8-sig')
 
     def files(self, pattern):
-        """Return the names of files that both have, with what they hold."""
+        """Return files by their names; names and contents have to be the same in both courses."""
         found = [
             {str(p.relative_to(c.root)): p.read_bytes() for p in c.gradebook.glob(pattern)}
             for c in self.courses
@@ -116,7 +116,7 @@ def plain(text, course):
     return text.replace(str(course.root), 'COURSE')
 
 
-def test_late_work_points_by_hand_and_tables_are_those_of_sqlite(both, capfd):
+def test_late_penalties_manual_points_and_tables_equal_those_of_sqlite(both, capfd):
     journey = Journey(both, capfd)
     for course in both:
         (course.gradebook / 'deadlines.toml').write_text(RULES)
@@ -155,7 +155,7 @@ def test_late_work_points_by_hand_and_tables_are_those_of_sqlite(both, capfd):
     assert last.startswith(f'{TOY},2026-03-29 21:59:00,2026-03-29 21:59:59,ada,Ödland,')
 
 
-def test_a_student_who_leaves_and_a_lesson_that_is_withdrawn_cost_nobody_else(both, capfd):
+def test_removing_a_student_or_a_lesson_has_the_same_effect_as_in_sqlite(both, capfd):
     journey = Journey(both, capfd)
     for course in both:
         serving_desk.grade_here(course)
@@ -175,7 +175,7 @@ def test_a_student_who_leaves_and_a_lesson_that_is_withdrawn_cost_nobody_else(bo
     assert TOY not in journey.file('gradebook/totals.csv')
 
 
-def test_a_backup_is_restored_as_the_page_says(course, postgresql, capfd):
+def test_a_backup_can_be_restored_as_documented(course, postgresql, capfd):
     for student in ('ada', 'bob'):
         hand_in(course, student, None)
     serving_desk.grade_here(course)
@@ -204,7 +204,7 @@ def test_a_backup_is_restored_as_the_page_says(course, postgresql, capfd):
     assert students_in(course) == ['ada', 'bob', 'zoe']
 
 
-def test_who_hands_in_again_while_the_server_is_away_is_graded_later(
+def test_a_submission_that_arrives_while_the_server_is_away_is_graded_later(
     course, postgresql, tmp_path, monkeypatch
 ):
     inbound = serving_desk.exchange_in(tmp_path)

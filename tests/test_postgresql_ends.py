@@ -1,4 +1,4 @@
-"""What ends a server of PostgreSQL, or keeps it from answering: nothing is lost or hidden."""
+"""A server of PostgreSQL that ends or does not answer: no grade is lost, no fault hidden."""
 
 import functools
 import itertools
@@ -89,7 +89,7 @@ def autograded(course):
 
 
 @pytest.mark.timeout(3600)
-def test_a_server_that_crashes_in_the_middle_loses_nothing_and_the_run_goes_on(
+def test_a_crash_of_the_server_loses_no_grade_and_the_next_run_goes_on(
     handed_in, grade, postgresql, tmp_path
 ):
     numbers = itertools.count()
@@ -164,7 +164,7 @@ def test_a_server_that_is_started_again_meanwhile_is_waited_for(course, postgres
     assert len(said) == 1
 
 
-def test_waiting_ends_and_what_waiting_does_not_help_is_told_at_once(
+def test_waiting_for_the_server_ends_and_is_skipped_for_other_faults(
     course, postgresql, monkeypatch
 ):
     monkeypatch.setattr('grader.storage.failures.TIMEOUT_SEC', 0.3)
@@ -232,7 +232,9 @@ def limit_connections(postgresql, most):
         (another_encoding, 'has the encoding LATIN1'),
     ],
 )
-def test_what_is_wrong_is_told_in_a_sentence_by_each_verb(course, postgresql, fault, words, capfd):
+def test_each_verb_reports_a_fault_of_the_server_in_a_sentence(
+    course, postgresql, fault, words, capfd
+):
     submit(course, 'ada', answered(course, 'def double(x):\n    return 2 * x'))
     fault(postgresql, course)
     try:

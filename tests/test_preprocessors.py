@@ -36,7 +36,7 @@ def restored(course, content):
     return notebook
 
 
-def test_healing_puts_the_source_back_around_the_answers(course):
+def test_restoring_puts_the_source_back_around_the_answers(course):
     submitted = answered(course, ANSWER)
     submitted.cells = [c for c in submitted.cells if c.id != 'double-check']
     notebook = restored(course, submitted)
@@ -57,7 +57,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize('metadata', HOSTILE.values(), ids=HOSTILE)
-def test_hostile_metadata_is_as_good_as_none(course, metadata):
+def test_hostile_metadata_is_ignored(course, metadata):
     submitted = answered(course, ANSWER)
     expected = restored(course, submitted)
     for cell in submitted.cells:
@@ -82,7 +82,7 @@ def role_of(cell):
 @pytest.mark.parametrize(
     'content', ['', '{}', b'\xff' * 100], ids=['empty', 'no notebook', 'binary']
 )
-def test_the_unreadable_is_healed_to_nothing_with_its_problem(course, content):
+def test_an_unreadable_notebook_fails_all_checks_with_its_problem_as_reason(course, content):
     notebook = restored(course, content)
     assert TOY in notebook.metadata[KEY].problem
     executed, _ = ExecuteRooms().preprocess(notebook, resources(course, 'autograded'))
@@ -98,7 +98,7 @@ def tasks(monkeypatch):
 
 
 @pytest.mark.parametrize('in_a_loop', [False, True], ids=['command', 'formgrader'])
-def test_running_takes_the_students_seed_and_the_students_files(course, tasks, in_a_loop):
+def test_execution_uses_the_students_seed_and_the_students_files(course, tasks, in_a_loop):
     folder = submit(course, 'ada', answered(course, ANSWER)).parent
     (folder / 'helper.py').write_text('')
     (folder / 'data.csv').write_text('')
@@ -118,6 +118,6 @@ def test_running_takes_the_students_seed_and_the_students_files(course, tasks, i
     ]
 
 
-def test_both_passes_are_in_force():
+def test_both_preprocessors_are_enabled():
     assert RestoreSubmission().enabled
     assert ExecuteRooms().enabled

@@ -1,4 +1,4 @@
-"""What Validate has seen pass: a file of the student's, and what the contents page shows of it."""
+"""Exercises that passed in Validate: the file that stores them, and the contents page."""
 
 import json
 import shutil
@@ -77,7 +77,7 @@ def test_nothing_has_passed_on_a_fresh_copy(page, file):
     assert not file.exists()
 
 
-def test_what_passed_is_shown_until_the_answer_changes_and_again_when_it_is_back(page, file):
+def test_an_exercise_counts_as_passed_only_with_the_answer_that_passed(page, file):
     notebook = notebook_of(page)
     before = notebook.read_bytes()
     assert passes_in(file, notebook) == ()
@@ -90,7 +90,7 @@ def test_what_passed_is_shown_until_the_answer_changes_and_again_when_it_is_back
     assert state(page, file) == 'passed'
 
 
-def test_text_and_other_cells_change_nothing_and_another_check_does(page, file):
+def test_a_changed_check_resets_a_passed_exercise_and_changed_text_does_not(page, file):
     notebook = notebook_of(page)
     passes_in(file, notebook)
     edit(notebook, 'contract', lambda source: source + '\n\nMy notes.')
@@ -100,14 +100,14 @@ def test_text_and_other_cells_change_nothing_and_another_check_does(page, file):
     assert state(page, file) == 'changed'
 
 
-def test_what_failed_since_has_not_passed(page, file):
+def test_an_exercise_that_failed_later_is_no_longer_passed(page, file):
     notebook = notebook_of(page)
     passes_in(file, notebook)
     record(file, LESSON, {NAME: (answer_in(notebook), False)}, notebook)
     assert state(page, file) == 'open'
 
 
-def test_the_other_edition_and_a_new_copy_of_the_course_know_it(page, file, tmp_path):
+def test_another_edition_and_a_new_copy_of_the_course_show_passed_exercises(page, file, tmp_path):
     notebook = notebook_of(page)
     passes_in(file, notebook)
     chinese = page.parent / 'zh_CN' / 'index.ipynb'
@@ -122,7 +122,7 @@ def test_the_other_edition_and_a_new_copy_of_the_course_know_it(page, file, tmp_
     assert state(newer / 'index.ipynb', file) == 'changed'
 
 
-def test_where_the_notebook_is_gone_or_damaged_what_passed_stays(page, file):
+def test_an_exercise_stays_passed_if_the_notebook_is_missing_or_damaged(page, file):
     passes_in(file, notebook_of(page))
     notebook_of(page).write_text('{')
     assert state(page, file) == 'passed'
@@ -131,7 +131,7 @@ def test_where_the_notebook_is_gone_or_damaged_what_passed_stays(page, file):
 
 
 @pytest.mark.parametrize('content', [b'{', b'[]', b'{"metadata": {}}', b'\xff'])
-def test_what_is_no_contents_page_is_refused_in_a_sentence(tmp_path, file, content):
+def test_a_file_that_is_not_the_contents_page_is_refused(tmp_path, file, content):
     other = tmp_path / 'other.ipynb'
     other.write_bytes(content)
     with pytest.raises(CourseError, match='is not the contents page'):
@@ -161,7 +161,7 @@ def test_a_package_that_is_the_answer_counts_with_all_its_files(page, file):
 # --- the file ------------------------------------------------------------------------------------
 
 
-def test_it_lies_in_the_folder_of_the_user_s_data_and_holds_no_answer(page, file, tmp_path):
+def test_the_file_is_in_the_data_folder_of_the_user_and_contains_no_answer(page, file, tmp_path):
     passes_in(file, notebook_of(page))
     assert file == tmp_path / 'data/my_robot_basics/passed_answers.json'
     assert [path.name for path in file.parent.iterdir()] == [file.name]
@@ -184,12 +184,12 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize('content', DAMAGED.values(), ids=DAMAGED)
-def test_a_damaged_file_is_told_kept_and_replaced(page, file, content):
+def test_a_damaged_file_is_reported_kept_and_replaced(page, file, content):
     file.parent.mkdir(parents=True)
     file.write_bytes(content)
     shown = progress_on(page, file)
     assert 'is damaged, so your progress is not shown' in shown.notes[0]
-    assert file.read_bytes() == content  # who only looks changes nothing
+    assert file.read_bytes() == content  # reading alone does not change the file
     (note,) = passes_in(file, notebook_of(page))
     aside = file.with_name('passed_answers.damaged-1.json')
     assert f'it is kept as {aside}' in note
@@ -212,7 +212,7 @@ def test_a_newer_file_is_left_as_it_is(page, file):
     assert progress_on(page, file).notes == (note,)
 
 
-def test_what_cannot_be_written_is_told_and_the_report_stays(page, file):
+def test_a_file_that_cannot_be_written_is_reported_without_an_error(page, file):
     file.parent.parent.mkdir()
     file.parent.write_text('a file in the way')
     (note,) = passes_in(file, notebook_of(page))
@@ -220,7 +220,7 @@ def test_what_cannot_be_written_is_told_and_the_report_stays(page, file):
     assert 'the checks are not affected' in note
 
 
-def test_several_that_write_at_a_time_lose_nothing(page, file):
+def test_concurrent_writers_lose_no_passed_exercise(page, file):
     names = [f'exercise_{number}' for number in range(24)]
 
     def write(name):
@@ -231,14 +231,14 @@ def test_several_that_write_at_a_time_lose_nothing(page, file):
     assert sorted(read_passes(file)[LESSON]) == sorted(names)
 
 
-def test_it_stays_small(page, file):
+def test_only_the_latest_passed_answers_of_an_exercise_are_kept(page, file):
     for number in range(MOST_OF_ONE + 5):
         record(file, LESSON, {NAME: (str(number), True)}, notebook_of(page))
     kept = [each.answer for each in read_passes(file)[LESSON][NAME]]
     assert kept == [str(number) for number in range(5, MOST_OF_ONE + 5)]
 
 
-# --- what a report says --------------------------------------------------------------------------
+# --- reports -------------------------------------------------------------------------------------
 
 
 def report_of(*outcomes, answer='abc'):
@@ -261,11 +261,11 @@ def report_of(*outcomes, answer='abc'):
         (['by hand'], None),
     ],
 )
-def test_an_exercise_passes_when_all_that_can_be_checked_does(outcomes, passed):
+def test_an_exercise_passes_when_all_checks_that_can_run_pass(outcomes, passed):
     assert has_passed(report_of(*outcomes).parts[0]) is passed
 
 
-def test_a_report_is_written_down_and_unknown_is_not(page, file):
+def test_a_passed_report_is_recorded_and_an_unknown_outcome_is_not(page, file):
     notebook = notebook_of(page)
     remember(report_of('not checked'), notebook)
     assert not file.exists()
@@ -279,7 +279,7 @@ def test_a_report_is_written_down_and_unknown_is_not(page, file):
 # --- a terminal ----------------------------------------------------------------------------------
 
 
-def test_the_terminal_shows_the_same(page, file, capsys):
+def test_the_terminal_shows_passed_exercises(page, file, capsys):
     passes_in(file, notebook_of(page))
     assert main([str(page)]) == 0
     said = capsys.readouterr().out
@@ -290,7 +290,7 @@ def test_the_terminal_shows_the_same(page, file, capsys):
     assert said.endswith('This is kept on this computer alone. You get your points at grading.\n')
 
 
-def test_the_usage_names_what_is_typed(page, file, capsys):
+def test_the_usage_names_the_command_that_is_typed(page, file, capsys):
     with pytest.raises(SystemExit):
         main([str(page), 'xx'])
     assert capsys.readouterr().err == (
@@ -299,6 +299,6 @@ def test_the_usage_names_what_is_typed(page, file, capsys):
     )
 
 
-def test_the_terminal_says_in_a_sentence_what_is_wrong(tmp_path, file, capsys):
+def test_the_terminal_reports_a_missing_contents_page(tmp_path, file, capsys):
     assert main([str(tmp_path / 'index.ipynb')]) == 2
     assert 'cannot be read: No such file' in capsys.readouterr().err

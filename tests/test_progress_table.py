@@ -28,9 +28,7 @@ def slowly(names):
         yield SubmissionOutcome(name, '00_toy', SAID.get(name), 'no room')
 
 
-def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
-    monkeypatch, tmp_path
-):
+def test_a_terminal_shows_the_number_done_the_rate_and_the_remaining_time(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, 'stderr', Terminal())
     names = ['ada', 'bob', 'eve', 'kim']
     submissions = [SubmissionFolder(name, '00_toy', tmp_path) for name in names]
@@ -44,7 +42,7 @@ def test_a_terminal_sees_how_many_are_done_how_fast_and_how_long_it_will_take(
     assert '1 with all points, 1 with fewer, 1 for a person' in rate
 
 
-def test_time_goes_on_while_one_submission_takes_long(monkeypatch, tmp_path):
+def test_the_progress_bar_is_redrawn_while_a_submission_takes_long(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, 'stderr', Terminal())
     monkeypatch.setattr(progress_table, 'TICK_SEC', 0.01)
 
@@ -59,7 +57,7 @@ def test_time_goes_on_while_one_submission_takes_long(monkeypatch, tmp_path):
     assert not [thread for thread in threading.enumerate() if thread.name == 'bar']
 
 
-def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
+def test_output_that_is_not_a_terminal_contains_only_rows(monkeypatch, tmp_path, capsys):
     list(print_rows(slowly(['zoe']), [SubmissionFolder('zoe', '00_toy', tmp_path)]))
     printed = capsys.readouterr()
     assert printed.err == ''
@@ -69,7 +67,7 @@ def test_a_log_sees_rows_alone(monkeypatch, tmp_path, capsys):
     ]
 
 
-def test_a_row_says_what_lateness_cost_and_that_nothing_is_new():
+def test_a_row_shows_the_late_penalty_and_whether_the_score_is_unchanged():
     late = replace(SAID['bob'], former=2.0, late=0.3)
     row = SubmissionOutcome('bob', '00_toy', late, 'count again', reused=True)
     assert why(row) == '(unchanged) (late: -0.3) count again'

@@ -44,7 +44,7 @@ def run(*sources, **options):
     return [''.join(o.get('text', '') for o in cell.outputs) for cell in ran.cells]
 
 
-def test_jupyter_finds_the_kernel_and_what_starts_it():
+def test_jupyter_finds_the_kernel_and_its_provisioner():
     (entry,) = entry_points(group='jupyter_client.kernel_provisioners', name=NAME)
     assert entry.load() is SandboxProvisioner
     assert json.loads(SPEC.read_text()) == json.loads(
@@ -129,7 +129,7 @@ def test_a_cell_that_takes_too_long_is_interrupted_and_the_kernel_goes_on(left):
 
 
 @pytest.mark.slow
-def test_a_cell_that_takes_too_long_for_good_ends_it_all(left):
+def test_a_cell_timeout_without_an_interrupt_ends_the_kernel(left):
     with pytest.raises(CellTimeoutError):
         run('while True: pass', timeout=1)
     assert left() == (0, [])
@@ -170,7 +170,7 @@ async def first_word(manager, code):
         client.stop_channels()
 
 
-def test_a_manager_without_an_event_loop_starts_it_too(left):
+def test_a_kernel_manager_without_an_event_loop_starts_the_kernel(left):
     manager = KernelManager(kernel_name=NAME)
     manager.start_kernel()
     client = manager.client()
@@ -183,7 +183,7 @@ def test_a_manager_without_an_event_loop_starts_it_too(left):
     assert left() == (0, [])
 
 
-def test_where_there_is_no_sandbox_nothing_runs(monkeypatch, left):
+def test_no_cell_runs_if_there_is_no_sandbox(monkeypatch, left):
     monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no namespaces >&2; exit 1')
     with pytest.raises(RoomFailure, match='no namespaces'):
         run("open('/tmp/it_ran', 'w')")

@@ -159,14 +159,14 @@ def error_of(code, **names):
         ('x = (1', ''),
     ],
 )
-def test_what_pythons_own_words_do_not_tell_is_told(code, why):
+def test_an_unclear_error_of_python_is_explained_with_what_to_do(code, why):
     error = error_of(code, **NAMES)
     said = what_to_do(f'{type(error).__name__}: {error}')
     assert said.startswith(why) if why else said == ''
 
 
 @pytest.mark.starts
-def test_rclpy_itself_says_so_of_a_second_init():
+def test_the_error_of_a_second_rclpy_init_is_explained():
     context = rclpy.Context()
     rclpy.init(context=context)
     try:
@@ -177,19 +177,19 @@ def test_rclpy_itself_says_so_of_a_second_init():
     assert said == ', so leave out rclpy.init(): it has been called already'
 
 
-def test_an_answer_that_is_not_there_yet_is_told_by_the_students_line():
+def test_the_missing_result_of_a_future_is_recognised_by_the_students_line():
     said = "AttributeError: 'NoneType' object has no attribute 'reachable' (line 15, in receive: "
     assert 'add_done_callback' in what_to_do(f'{said}if future.result().reachable:)')
     assert what_to_do(f'{said}if answer.reachable:)') == ''
 
 
-def test_a_loop_over_the_keys_of_a_dict_is_told_by_the_students_line():
+def test_a_loop_over_the_keys_of_a_dict_is_recognised_by_the_students_line():
     said = 'ValueError: too many values to unpack (expected 2) (line 12, in solve: for a, b in '
     assert what_to_do(f'{said}solutions:)') == ', so go through .items() of a dict'
     assert what_to_do(f'{said}solutions.items():)') == ''
 
 
-def test_an_iterator_that_has_ended_is_told_by_what_a_coroutine_makes_of_it():
+def test_an_exhausted_iterator_in_a_coroutine_is_explained():
     said = 'RuntimeError: coroutine raised StopIteration'
     assert what_to_do(said) == ', so start again when next(…) finds no more'
 
@@ -221,8 +221,8 @@ REFUSED = {
 
 @pytest.mark.starts
 @pytest.mark.parametrize('case', REFUSED)
-def test_a_name_that_ros_refuses_is_told_with_what_to_write(run, case):
-    """Both where a cell raises it, on one line, and where a callback does."""
+def test_a_name_that_ros_refuses_is_explained_with_what_to_write(run, case):
+    """The explanation is the same for an error of a cell, on one line, and of a callback."""
     create, name, why = REFUSED[case]
     node = run(Node, 'namer')
     kinds = {Node.create_client: SolveIK, Node.create_publisher: MoveArm.Result}
@@ -239,14 +239,14 @@ def test_a_name_that_ros_refuses_is_told_with_what_to_write(run, case):
     assert why in explained(f'its callback raised {ename}: {evalue} (line 4, in f: g(x))')
 
 
-def test_a_full_stop_does_not_stand_before_a_comma():
+def test_the_full_stop_of_an_error_is_dropped_before_an_explanation():
     where = 'at index 0 in parameters list'
     said = f'TypeError: Third element 0 {where} is not a ParameterDescriptor'
     assert explained(f'{said}.') == said + DECIMAL_COMMA
     assert explained('TypeError: not so.') == 'TypeError: not so.'
 
 
-def test_the_note_on_a_cell_tells_what_to_do():
+def test_the_note_on_a_stopped_cell_says_what_to_do():
     said = "'function' object has no attribute 'add_entity'"
     run = CellRun(error=new_output('error', ename='AttributeError', evalue=said))
     told = trouble_in('five_hz-run', run)
@@ -254,7 +254,7 @@ def test_the_note_on_a_cell_tells_what_to_do():
 
 
 @pytest.mark.starts
-def test_rclpy_itself_says_so_of_a_decimal_comma(run):
+def test_errors_of_rclpy_about_a_decimal_comma_are_explained(run):
     class Talker(Node):
         def tick(self):
             pass
@@ -275,18 +275,18 @@ PROPERTIES = sorted(name for name, kept in vars(Node).items() if isinstance(kept
 
 @pytest.mark.starts
 @pytest.mark.parametrize('name', PROPERTIES)
-def test_an_attribute_that_node_has_already_is_told_by_rclpys_own_words(run, name):
+def test_an_assignment_to_a_property_of_node_is_explained(run, name):
     error = error_of(f'node.{name} = []', node=run(Node, 'keeper'))
     assert what_to_do(f'{type(error).__name__}: {error}') == ANOTHER_NAME
 
 
-def test_a_property_of_the_students_own_is_none_of_nodes():
+def test_an_assignment_to_a_property_of_another_class_is_not_explained():
     own = type('Own', (), {'rate': property(lambda self: 5.0)})
     error = error_of('own.rate = 2.0', own=own())
     assert what_to_do(f'{type(error).__name__}: {error}') == ''
 
 
-def test_only_methods_that_node_has_are_told_to_be_its_own():
+def test_the_pattern_of_nodes_own_methods_matches_15_methods_of_node():
     names = [name for name in vars(Node) if re.fullmatch(rclpy_names.OWN_METHODS, name)]
     assert 'get_logger' in names
     assert 'create_timer' in names
@@ -294,15 +294,15 @@ def test_only_methods_that_node_has_are_told_to_be_its_own():
 
 
 @pytest.mark.starts
-def test_a_method_behind_nodes_own_handle_is_told(run):
-    """Of a class named behind Node: `self.handle` is then rclpy's, which nobody can call."""
+def test_a_method_hidden_by_the_property_handle_of_node_is_explained(run):
+    """In a class listed after Node among the bases, `self.handle` is rclpy's and not callable."""
     error = error_of('node.handle()', node=run(Node, 'keeper'))
     said = f'{type(error).__name__}: {error}'
     assert what_to_do(said).startswith(', so give your method another name than `handle`')
 
 
 @pytest.mark.starts
-def test_the_type_that_an_interface_needs_is_told(run):
+def test_a_wrong_interface_type_is_explained_with_the_type_that_is_needed(run):
     node = run(Node, 'asker')
     for code in 'create_client(SolveIK.Request, "/a")', 'create_client(JointState, "/a")':
         error = error_of(f'node.{code}', node=node, **NAMES)
@@ -314,7 +314,7 @@ def test_the_type_that_an_interface_needs_is_told(run):
 
 
 @pytest.mark.starts
-def test_what_rclpy_refuses_without_a_word_is_told_with_how_to_make_it(run):
+def test_a_request_or_goal_of_another_type_is_explained_with_its_constructor(run):
     node = run(Node, 'asker')
     client = node.create_client(SolveIK, '/solve_ik')
     arm = ActionClient(node, MoveArm, '/move_arm')
@@ -329,7 +329,7 @@ def test_what_rclpy_refuses_without_a_word_is_told_with_how_to_make_it(run):
 
 
 @pytest.mark.starts
-def test_feedback_of_another_type_is_told_with_how_to_make_it(run):
+def test_feedback_of_another_type_is_explained_with_its_constructor(run):
     found = []
 
     class Server(Node):
@@ -350,7 +350,7 @@ def test_feedback_of_another_type_is_told_with_how_to_make_it(run):
     assert made_with(found[0]) == 'MoveArm.Feedback(position=…, remaining=…)'
 
 
-def test_a_check_puts_it_behind_what_was_raised(monkeypatch):
+def test_a_check_adds_the_constructor_to_the_exception_of_a_callback(monkeypatch):
     monkeypatch.setattr(raised.node_troubles, 'last_raised', lambda name: 'TypeError (line 3)')
     kind = '', 'SolveIK.Request(target=…)'
     monkeypatch.setattr(raised.node_troubles, 'unpublished_field', lambda name: kind)

@@ -1,4 +1,4 @@
-"""The questions of the quizzes: what their programs return, and what is said of a guess."""
+"""The questions of the quizzes: what their programs return, and the replies to a guess."""
 
 import ast
 import re
@@ -35,7 +35,7 @@ RETURNED = {
     'read_once': 5.0,
     'rule_without_effect': '/pose',
 }
-"""Written down here alone: students find out."""
+"""The results are written down only in this file: students find them out."""
 ALL = quizzes(Course())
 EXPLAINED = {'quiz_topics.ipynb': TOPICS, 'quiz_services.ipynb': SERVICES}
 GUESS = re.compile(r'^ask\((\w+), guess=(.+)\)$', re.MULTILINE)
@@ -47,12 +47,12 @@ def sources(name):
     return [cell.source for cell in ALL[name].cells if cell.cell_type == 'code']
 
 
-def test_each_quiz_is_there():
+def test_each_quiz_is_among_the_quizzes_of_the_course():
     assert [*ALL] == [*QUIZZES]
 
 
 @each_quiz
-def test_it_asks_ten_questions_tells_no_answer_and_explains_each(name):
+def test_a_quiz_has_ten_questions_with_explanations_and_reveals_no_answer(name):
     asked = [found for source in sources(name) for found in GUESS.findall(source)]
     assert [guess for _, guess in asked] == ['...'] * 10
     assert [program for program, _ in asked] == [*EXPLAINED[name]]
@@ -74,7 +74,7 @@ def test_each_question_says_what_to_guess_in_few_words(name):
 @pytest.mark.slow
 @each_quiz
 @pytest.mark.starts
-def test_what_is_guessed_right_is_right_and_what_is_not_is_told(name, capsys):
+def test_a_right_guess_is_confirmed_and_a_wrong_guess_is_explained(name, capsys):
     names: dict = {}
     for source in sources(name):
         asked = GUESS.search(source)
@@ -92,13 +92,13 @@ def test_what_is_guessed_right_is_right_and_what_is_not_is_told(name, capsys):
     stop()
 
 
-def test_without_a_guess_nothing_runs(capsys):
+def test_no_program_runs_without_a_guess(capsys):
     ask(lambda run: pytest.fail('it ran'))
     assert capsys.readouterr().out.startswith('Write your guess in place of `...`')
 
 
 @pytest.mark.starts
-def test_a_program_that_does_not_end_says_so_and_judges_no_guess(capsys):
+def test_a_program_that_does_not_end_is_reported_and_no_guess_is_judged(capsys):
     def waits(run):
         raise TimeoutError('waited 20 s')
 
@@ -113,16 +113,16 @@ OTHER = [(1, True), ('True', True), ([1], 1), ([1], [1, 2]), (object(), 1), (0, 
 
 
 @pytest.mark.parametrize(('guess', 'seen'), SAME)
-def test_the_same_is_the_same(guess, seen):
+def test_a_guess_that_equals_the_result_is_the_same(guess, seen):
     assert is_same(guess, seen)
 
 
 @pytest.mark.parametrize(('guess', 'seen'), OTHER)
-def test_and_nothing_else_is(guess, seen):
+def test_a_guess_of_another_value_or_type_is_not_the_same(guess, seen):
     assert not is_same(guess, seen)
 
 
-def test_programs_are_named_in_the_table_of_this_file():
+def test_each_program_in_the_table_of_results_is_defined_in_a_quiz():
     defined = {
         node.name
         for name in ALL
@@ -134,7 +134,7 @@ def test_programs_are_named_in_the_table_of_this_file():
 
 
 @each_quiz
-def test_its_links_lead_somewhere_in_each_edition(name):
+def test_links_of_a_quiz_lead_to_files_in_each_edition(name):
     for folder in (ROOT / 'notebooks', ROOT / 'notebooks/zh_CN'):
         quiz = nbformat.read(folder / name, as_version=4)
         links = re.findall(r'\]\((.+?)\)', '\n'.join(cell.source for cell in quiz.cells))

@@ -1,4 +1,4 @@
-"""A gradebook that can't be written to: each verb says so, and what is there stays."""
+"""A read-only gradebook: each verb reports that, and no stored file changes."""
 
 import errno
 import subprocess
@@ -70,7 +70,7 @@ def test_each_verb_says_that_a_read_only_gradebook_cannot_be_written(tmp_path):
 
 
 @pytest.mark.parametrize('code', [errno.EACCES, errno.EPERM, errno.EROFS])
-def test_what_is_refused_is_named(tmp_path, code):
+def test_the_path_of_a_refused_write_is_named(tmp_path, code):
     course, path = Course.at(tmp_path), tmp_path / 'gradebook' / 'deadlines.toml'
     said = f'^{path} cannot be .*then run the same command'
     with pytest.raises(GradebookError, match=said), in_sentences(course):

@@ -1,4 +1,4 @@
-"""What the README says is so: its commands, lessons, links, figures, examples and quoted words."""
+"""The README is true: its commands, lessons, links, figures, examples and quoted words."""
 
 import re
 import subprocess
@@ -69,7 +69,7 @@ def commands_of(text):
     return [' '.join(line.split()[:2]) for line in lines]
 
 
-def test_the_instructors_commands_are_the_steps_of_their_page_in_order():
+def test_the_instructors_commands_follow_the_steps_in_docs_for_instructors():
     path = commands_of(README.partition('## For instructors')[2])
     table = FOR_INSTRUCTORS.partition('## The steps')[2].partition('\n\n## ')[0]
     rows = re.findall(r'^\| [\w ]+ \| (.+?) \| .+ \|$', table, re.MULTILINE)
@@ -79,7 +79,7 @@ def test_the_instructors_commands_are_the_steps_of_their_page_in_order():
     assert [command for command in path if command not in steps] == []  # each behind the last one
 
 
-# --- what was measured ---------------------------------------------------------------------------
+# --- measured figures ----------------------------------------------------------------------------
 
 FIGURE = r'\d[\d,.]*\d|\d'
 SUMS = re.compile(r'^- \*\*.+(?:\n  .+)*', re.MULTILINE)
@@ -95,7 +95,7 @@ def figures_of(text):
     return set(re.findall(FIGURE, re.sub('`.*?`', '', without_links(text))))
 
 
-def test_each_figure_has_a_command_and_is_in_the_log_with_it():
+def test_each_figure_has_a_benchmark_and_is_in_docs_capacity():
     items = SUMS.findall(README)
     assert len(items) == 3
     sections = re.split(r'^## ', CAPACITY, flags=re.MULTILINE)
@@ -164,7 +164,7 @@ def test_the_chinese_readme_names_commands_that_exist_and_code_that_the_english_
     assert code[0] == code[1]
 
 
-def test_the_table_lists_the_lessons_that_there_are():
+def test_the_table_lists_all_lessons_with_their_points():
     rows = {}
     for path in sorted((ROOT / 'solutions').glob('*/*.ipynb')):
         cells = nbformat.read(path, as_version=4).cells
@@ -182,11 +182,11 @@ def test_the_table_lists_the_lessons_that_there_are():
 
 
 @pytest.mark.parametrize('link', sorted({first or second for first, second in LINKS}))
-def test_links_and_pictures_lead_somewhere(link):
+def test_links_and_pictures_lead_to_existing_files(link):
     assert (ROOT / link).is_file()
 
 
-def test_what_lies_where_is_there():
+def test_each_path_in_the_table_of_folders_exists():
     rows = README.partition('## What is where')[2].partition('\n## ')[0]
     named = re.findall(r'`([^`]+)`', ' '.join(re.findall(r'^\| (`.+?) \|', rows, re.MULTILINE)))
     assert len(named) > 5
@@ -213,7 +213,7 @@ def test_the_first_example_shows_the_arm():
     assert [output for output in outputs if output.get('name') == 'stderr'] == []
 
 
-def test_the_check_of_the_example_says_the_words_that_are_quoted():
+def test_the_check_of_the_example_fails_with_the_quoted_words():
     (quoted,) = re.findall(r'explains itself: \*(.+?)\*', README, re.DOTALL)
     check = EXAMPLES[1].replace('60.0', '10.0')
     assert check != EXAMPLES[1]
