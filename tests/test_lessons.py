@@ -245,7 +245,7 @@ def test_cell_ids_are_unique_and_readable(lesson):
         assert cell.id == marks(cell).get('grade_id', cell.id)
 
 
-def test_ignored_outputs_are_few_and_say_why(lesson):
+def test_cells_with_ignored_outputs_are_few_and_say_why(lesson):
     ignored = [c for c in lesson.cells if 'nbval-ignore-output' in c.metadata.get('tags', [])]
     assert len(ignored) <= 2
     for cell in ignored:
@@ -309,7 +309,7 @@ def test_a_demo_binds_nothing_that_later_cells_need(lesson):
             assert not shown & needed(cell), cell.id
 
 
-def test_a_grade_cell_says_what_it_checks_and_needs_nothing_of_the_lesson(lesson):
+def test_a_grade_cell_has_a_docstring_and_needs_no_name_of_the_lesson(lesson):
     for cell in code_cells(lesson):
         if not marks(cell).get('grade'):
             continue

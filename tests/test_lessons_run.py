@@ -29,7 +29,7 @@ def test_a_lesson_runs_again_in_the_same_kernel_whatever_was_run_between(
     everything = code_cells(lesson)
     within = [cell for cell in everything if not is_left_out(cell)]
     unchecked = [cell for cell in within if not is_grade(cell)]
-    # nbval sees that each runs in a fresh kernel; here some may fail for want of others, but none
+    # nbval runs each in a fresh kernel; here cells may fail because others are missing, but none
     # may hang or kill the kernel
     first = [*unchecked, *reversed(within)]
     last = everything
@@ -91,7 +91,7 @@ def is_left_out(cell):
 
 
 def needed(cells):
-    """Return those cells that leave a name to others, and do not only show something."""
+    """Return the cells that bind a name which other cells use."""
     binds, uses = zip(*map(names_in, cells), strict=True)
     asked = [set().union(*uses[:at], *uses[at + 1 :]) for at in range(len(cells))]
     return [

@@ -48,7 +48,7 @@ def printed(run):
     return ''.join(output.text for output in run.outputs)
 
 
-def test_nothing_listens_in_the_shared_network_but_ros(rooms):
+def test_only_ros_listens_in_the_shared_network(rooms):
     assert rooms(LISTENERS) == 'tcp []\nraw []\nabstract []\nudp 0\n'
     rooms(NODE)  # its participant listens over UDP
     assert rooms(LISTENERS).startswith('tcp []\nraw []\nabstract []\nudp ')

@@ -32,7 +32,7 @@ def test_the_axes_are_in_metres_and_equal_and_hold_the_whole_ring():
 
 
 @pytest.mark.parametrize('pose', [(0, 0), (90, 0), (23.4, -67.8), (-90, 180), (1718.9, 2578.3)])
-def test_links_and_words_fit_the_pose(pose):
+def test_links_labels_and_description_match_the_pose(pose):
     picture = ArmPicture(l1=1.0, l2=0.8)
     picture.move(*pose)
     lines = {line.get_label(): line.get_xydata() for line in axes_of(picture).lines}
@@ -48,7 +48,7 @@ def test_links_and_words_fit_the_pose(pose):
 
 
 @pytest.mark.parametrize('dashed', [None, (0, 90)])
-def test_the_words_hide_neither_links_nor_each_other(dashed):
+def test_the_labels_cover_neither_links_nor_one_another(dashed):
     picture = ArmPicture(l1=1.0, l2=0.8)
     if dashed:
         picture.dashed(*dashed)

@@ -27,7 +27,7 @@ def test_a_subscription_with_a_deep_queue_receives_all_pictures_in_order(viewer)
 
 
 @pytest.mark.slow
-def test_a_short_queue_of_the_publisher_loses_pictures_though_it_is_reliable(viewer):
+def test_a_reliable_publisher_with_a_short_queue_loses_pictures(viewer):
     """Lesson 6: what RELIABLE is to send again must still be in the publisher's queue."""
     numbers = []
     viewer.create_subscription(

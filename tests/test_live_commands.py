@@ -53,7 +53,7 @@ def test_running_a_command_again_replaces_its_process(notebook):
 
 
 def test_the_last_output_of_a_command_that_ends_is_printed(notebook, capsys, monkeypatch):
-    monkeypatch.setattr(commands, 'STARTED_SEC', 60.0)  # a slow start is not what this is about
+    monkeypatch.setattr(commands, 'STARTED_SEC', 60.0)  # a slow start is not under test
     notebook(left=f'{START} -r __ns:=left')
     live.run_commands('left')
     printed = ' '.join(capsys.readouterr().out.split())

@@ -15,7 +15,7 @@ import subprocess, sys
 name = '.'.join(['my_robot_basics', 'kinematics_publisher'])
 subprocess.run([sys.executable, '-c', {SLEEPS!r}, name])
 """
-"""The name is not in its own command line."""
+"""The name of the program is not in the command line of the process that starts it."""
 
 pytestmark = pytest.mark.starts
 

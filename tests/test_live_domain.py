@@ -70,7 +70,7 @@ time.sleep(30)
         holder.kill()
         holder.wait()
         os.kill(child_pid, 0)  # the child does live
-        # on a busy machine it may not have had a moment yet in which to let go
+        # on a busy machine the domain may become free only a moment later
         deadline = time.monotonic() + 10
         while (free := domain.claim().domain_id) != few_domains and time.monotonic() < deadline:
             time.sleep(0.02)

@@ -98,7 +98,7 @@ def test_a_name_with_two_types_is_two_topics():
         (graph('/a > /t', nodes=['/d']), f'graph: /t ({STRING}): /a → nobody; on no topic: /d'),
     ],
 )
-def test_words_say_what_the_picture_shows(arrows, text):
+def test_the_description_says_what_the_picture_shows(arrows, text):
     assert describe(arrows) == text
 
 

@@ -66,7 +66,7 @@ def test_a_cell_that_spins_says_how_to_stop_and_how_to_go_on(lesson):
         'of the lines that make silent and spin it, and run this cell again: run spins in the '
         'background.'
     )
-    # what it says works
+    # the advice of the message works
     assert lesson.run('node = run(Silent)').stdout == ''
     assert 'already: leave rclpy.spin out' in ' '.join(
         lesson.run('rclpy.spin(node)').error.split()
@@ -86,7 +86,7 @@ finally:
 
 
 def test_a_pasted_program_catches_each_interrupt_as_it_does_on_a_robot():
-    # in a new kernel: what an earlier rclpy.init has left may keep rclpy's handler away
+    # in a new kernel: an earlier rclpy.init may keep rclpy from installing its signal handler
     lesson = Lesson(TALKER)
     try:
         for _ in range(2):
@@ -107,7 +107,7 @@ def ends_when_interrupted(lesson, program):
 
 def test_a_program_spins_after_an_interrupt_while_rclpy_made_an_executor(lesson):
     lesson.run('reset()\nfrom unittest.mock import patch')
-    # what rclpy calls when it has kept the executor, and before it would drop it at a shutdown
+    # rclpy calls this after it has kept the executor, and before it could drop it at a shutdown
     moment = "with patch('rclpy.get_default_context', side_effect=KeyboardInterrupt):"
     spin = 'rclpy.spin(node)'
     assert 'caught' in lesson.run(PROGRAM.replace(spin, f'{moment} {spin}')).stdout

@@ -1,4 +1,4 @@
-"""Which nodes of this process are found, and that nothing else is touched on the way."""
+"""The nodes of this process are found, and the search disturbs nothing else."""
 
 import subprocess
 import sys
@@ -17,7 +17,7 @@ class Derived(Node):
     """A node as students write them."""
 
 
-def test_nodes_are_found_alive_and_dead():
+def test_nodes_of_the_process_are_found_before_and_after_a_shutdown():
     context = Context()
     rclpy.init(args=[], context=context)
     made = {Node('plain', context=context), Derived('derived', context=context)}

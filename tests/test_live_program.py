@@ -63,7 +63,7 @@ def refusal(cell=CELL):
     return lines
 
 
-def test_a_cell_without_an_open_class_stays_as_it_is():
+def test_a_cell_without_a_placeholder_class_stays_unchanged():
     text = CELL.replace('...', 'pass')
     assert program.fill_in(text) == text
 
@@ -75,7 +75,7 @@ def test_the_class_is_copied_as_it_was_typed(notebook):
     assert program.fill_in(cell) == expected
 
 
-def test_the_class_that_was_run_last_counts_with_its_decorators(notebook):
+def test_the_class_that_was_run_last_is_copied_with_its_decorators(notebook):
     notebook(ANSWER.replace('1.0', '2.0'))
     twice = f'def same(x):\n    return x\n\n{ANSWER}\n@same\n{ANSWER.replace("1.0", "3.0")}'
     notebook(twice)
@@ -186,7 +186,7 @@ def test_invalid_python_is_reported_with_the_line_of_the_cell():
     assert 'not valid Python (line 4: ' in line
 
 
-def test_names_are_known_however_they_are_bound():
+def test_bound_names_are_found_in_each_form_of_binding():
     text = """
 import a.b
 from c import d as e

@@ -23,7 +23,7 @@ PAIRS = [
 
 
 @pytest.mark.parametrize(('policy', 'offered', 'requested'), PAIRS)
-def test_a_pair_matches_where_rclpy_finds_no_error(policy, offered, requested):
+def test_a_qos_pair_matches_if_rclpy_finds_no_error(policy, offered, requested):
     ends = [
         QoSProfile(depth=1, **{policy: ENUMS[policy][value]}) for value in (offered, requested)
     ]

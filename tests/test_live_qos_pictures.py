@@ -25,7 +25,7 @@ def shown(monkeypatch):
     return bundles
 
 
-def test_a_matrix_says_yes_or_no_in_each_cell_and_in_words(shown):
+def test_a_qos_matrix_is_drawn_and_lists_each_outcome_in_words(shown):
     show_qos_matrix(OUTCOMES, title='who reaches whom')
     [bundle] = shown
     assert bundle['image/png'].startswith(b'\x89PNG')

@@ -74,7 +74,7 @@ print('lives', rclpy.ok())
 
 
 @pytest.mark.parametrize('pause_sec', [0.0, 0.5], ids=['at_once', 'later'])
-def test_a_node_starts_and_lives_after_a_main_that_was_interrupted(pause_sec):
+def test_a_node_starts_and_stays_alive_after_an_interrupted_main(pause_sec):
     # rclpy's own signal handler ends all contexts of the process, in a thread, sooner or later
     script = INTERRUPTED.format(pause_sec=pause_sec)
     run = subprocess.run(

@@ -54,7 +54,7 @@ def test_a_dragged_slider_publishes_a_target_and_stop_disables_the_sliders():
     assert picture.metadata['image/png']['alt'] == picture.data['text/plain']
 
 
-def test_both_branches_end_at_the_target(view):
+def test_both_ik_branches_of_the_arm_end_at_the_target(view):
     view.receive(Point(x=-0.4, y=1.1, z=9.0))
     _, tip, _, dashed, target, *_ = lines_of(view)
     assert tip[-1] == pytest.approx([-0.4, 1.1])

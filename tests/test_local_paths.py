@@ -29,7 +29,7 @@ def test_folders_of_this_machine_are_shortened(text, shown):
     assert shorten_local_paths(text) == shown
 
 
-def test_pictures_stay_as_they_are_and_all_texts_are_shortened():
+def test_paths_are_shortened_in_all_texts_but_not_in_pictures():
     picture = f'{ROOT}/aGk='
     cell = new_code_cell('x')
     cell.outputs = [
@@ -46,7 +46,7 @@ def test_pictures_stay_as_they_are_and_all_texts_are_shortened():
 
 
 @pytest.mark.starts
-def test_a_graded_notebook_does_not_say_where_the_course_lies(tmp_path):
+def test_a_graded_notebook_does_not_contain_the_path_of_the_course(tmp_path):
     course = released_course(tmp_path)
     answer = 'import rclpy\nprint(rclpy.__file__)\nfrom my_robot_basics.live import nothing_such'
     restored = restore(answered(course, answer), course.template('00_toy')).notebook

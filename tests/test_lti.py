@@ -77,7 +77,7 @@ def test_each_score_is_sent_once_and_again_when_it_changes(given, platform, caps
     asked = len(platform.requests)
 
     assert given(cell('ada', 4.0), cell('bob', 2.5), cell('ada', 1.0, OTHER)) == 0
-    assert len(platform.requests) == asked  # nothing has changed, and nobody is asked
+    assert len(platform.requests) == asked  # nothing has changed: no request
 
     assert given(cell('ada', 4.0), cell('bob', 5.0), cell('ada', 1.0, OTHER)) == 0
     assert platform.received[3:] == [sent(1, '4712', 5.0)]
@@ -100,7 +100,7 @@ def test_only_final_scores_are_sent_and_the_other_students_are_listed(given, pla
     said = capsys.readouterr().out
     assert f'{LESSON}: ada needs manual grading' in said
     assert f'{LESSON}: dan is not in [user_ids] of lti.toml' in said
-    assert platform.received == [sent(1, '4712', 0.0)]  # no platform takes less than nothing
+    assert platform.received == [sent(1, '4712', 0.0)]  # no platform accepts a negative score
 
 
 def test_the_scores_of_one_assignment_can_be_sent(given, platform, capsys):
@@ -127,7 +127,7 @@ def test_no_score_is_lost_while_the_platform_fails_to_answer(mood, why, given, p
         mood == 'hangs' and why in said
     )
     assert '0 scores sent, 2 waiting\nNothing is lost.' in said
-    assert len(platform.requests) == 1  # it is not asked for each student
+    assert len(platform.requests) == 1  # not one for each student
 
     platform.mood = 'well'
     assert given(cell('ada', 4.5), cell('bob', 2.5)) == 0

@@ -228,7 +228,7 @@ def test_a_database_in_use_is_waited_for_with_a_message(tmp_path, capsys, monkey
             assert 'run the same command again' in said.err
 
 
-def test_a_pipe_gets_each_line_as_it_is_printed(tmp_path):
+def test_a_pipe_receives_each_line_as_soon_as_it_is_printed(tmp_path):
     make_course(tmp_path)
     code = """
 import sys

@@ -134,7 +134,7 @@ def test_the_reason_of_a_check_replaces_the_note_on_manual_grading(course):
 
 
 @pytest.mark.slow
-def test_the_formgrader_gives_points_that_a_regrade_keeps(course, formgrader):
+def test_points_given_in_the_formgrader_are_kept_by_a_regrade(course, formgrader):
     grade(course, 'ada', BECAUSE)
     [ada] = [
         found

@@ -42,14 +42,14 @@ def test_several_notebooks_of_one_exercise_are_put_in_order_by_their_times(at):
 
 def test_different_notebooks_without_distinct_times_are_left_out(at):
     two = at('ada_02_joint_state.ipynb', 'one'), at('ada-02_joint_state.ipynb', 'two')
-    for options in ({}, {'file_times': True}):  # they are of the same time, too
+    for options in ({}, {'file_times': True}):  # the times of the files are equal, too
         taken, left = owners(*two, **options)
         assert taken == []
         assert [path for path, _ in left] == [each.path for each in two]
         assert all('one of 2 notebooks for 02_joint_state by ada' in why for _, why in left)
 
 
-def test_the_same_notebook_twice_is_one(at):
+def test_two_equal_notebooks_count_as_one_submission(at):
     two = at('ada_02_joint_state.ipynb', 'one'), at('ada-02_joint_state.ipynb', 'one')
     taken, [(_, why)] = owners(*two)
     assert taken == [('ada', '02_joint_state')]

@@ -100,7 +100,7 @@ def test_names_that_a_cell_binds_and_needs_are_found(source, bound, needed):
 
 
 @pytest.mark.parametrize('before', [')', 'x = 1'])
-def test_empty_lines_are_not_looked_through_again_and_again(before):
+def test_many_empty_lines_are_read_within_half_a_second(before):
     names_of.cache_clear()
     began = time.process_time()
     names_of(before + '\n' * (MAX_SOURCE_CHARACTERS - len(before)))

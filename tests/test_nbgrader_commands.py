@@ -110,7 +110,7 @@ def test_course_feedback_and_nbgrader_write_the_same_pages(courses):
         assert 'canary' not in a.read_text()
 
 
-@pytest.mark.slow  # its scores are read above from where it reads them
+@pytest.mark.slow  # a test above reads the same scores from the same database
 def test_nbgrader_exports_the_scores_of_course_grade(courses):
     ours, _ = courses
     nbgrader(ours, 'export', f'--CourseDirectory.db_url={ours.db_url}', '--to', 'ours.csv')

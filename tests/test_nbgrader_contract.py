@@ -150,7 +150,7 @@ def test_the_command_and_the_formgrader_both_use_the_configured_passes(config):
     )
 
 
-def test_the_configured_passes_are_registered_and_in_force(config):
+def test_the_configured_passes_are_registered_and_enabled(config):
     converter = Autograde(config=config)
     converter.exporter = Exporter(config=Config({'Exporter': {'default_preprocessors': []}}))
     for sanitizing, expected in ((True, SANITIZE_PASSES), (False, AUTOGRADE_PASSES)):

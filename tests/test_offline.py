@@ -105,7 +105,7 @@ def test_a_folder_that_course_wheels_did_not_finish_is_refused(content, tmp_path
     assert 'which ./course wheels writes last' in refusal(tmp_path, '3.12.1', pins)
 
 
-def test_a_folder_of_somebody_elses_files_is_left_alone(tmp_path):
+def test_a_folder_with_other_files_is_refused(tmp_path):
     (tmp_path / 'thesis.odt').touch()
     with pytest.raises(LauncherError, match='is not empty and was not made by'):
         what_is_there(tmp_path)

@@ -69,7 +69,7 @@ def brief(output):
 
 
 @pytest.mark.parametrize(('messages', 'expected'), KEPT.values(), ids=KEPT)
-def test_outputs_are_kept(messages, expected):
+def test_valid_outputs_are_kept_as_a_notebook_can_store_them(messages, expected):
     run = run_of(*messages)
     assert [brief(output) for output in run.outputs] == expected
     nbformat.validate(notebook_with(run.outputs))

@@ -103,7 +103,7 @@ def installed(tmp_path, entry):
         ('greet = a b c', NODE, 'has no executable: name one in entry_points'),
     ],
 )
-def test_an_entry_point_that_leads_nowhere_is_named(tmp_path, entry, module, words):
+def test_a_faulty_entry_point_is_reported(tmp_path, entry, module, words):
     files = package_files.read(make_package(tmp_path))
     prefix, site = installed(tmp_path, entry)
     if module is not None:

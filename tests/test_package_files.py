@@ -13,7 +13,7 @@ def folder(tmp_path):
     return make_package(tmp_path)
 
 
-def test_a_new_package_is_taken_as_it_is(folder):
+def test_all_files_of_a_new_package_are_taken(folder):
     found = read(folder)
     assert {*found.taken} == {
         *('package.xml', 'setup.py', 'setup.cfg', 'resource/greeter'),
@@ -51,7 +51,7 @@ def test_a_file_that_is_left_out_is_named_with_the_reason(folder, path, reason):
 
 
 @pytest.mark.parametrize('path', ['greeter/log/a.py', 'größe/ünï.md', 'a b.txt', 'config/a.yaml'])
-def test_a_file_of_a_students_own_is_taken(path):
+def test_a_students_own_file_is_taken(path):
     assert why_not(path.split('/')) == ''
 
 

@@ -75,7 +75,7 @@ def test_an_error_of_the_operating_system_is_not_blamed_on_the_text():
 
 
 @pytest.mark.skipif(parsing.AT_ONCE < 2, reason='one processor: one question at a time')
-def test_two_questions_are_answered_side_by_side(tmp_path):
+def test_two_questions_are_answered_at_the_same_time(tmp_path):
     """Each end of a FIFO is open once the other one is."""
     os.mkfifo(tmp_path / 'fifo')
     with ThreadPoolExecutor(2) as threads:

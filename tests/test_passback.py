@@ -128,7 +128,7 @@ def test_moodles_own_worksheet_keeps_its_columns_and_missing_rows_are_reported(
     assert '王 小明 has no row in roster.csv: give this score by hand' in capsys.readouterr().out
 
 
-def test_canvas_gets_the_columns_up_to_the_section_and_one_of_scores(course, roster, capsys):
+def test_the_canvas_file_has_the_columns_up_to_the_section_and_the_scores(course, roster, capsys):
     rows = canvas(
         course,
         '--roster',

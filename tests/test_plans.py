@@ -80,7 +80,7 @@ def test_plans_begin_with_the_fewest_cells_that_may_suffice(own, expected):
 
 
 @pytest.mark.parametrize('own', [own for own, _ in PLANS.values()], ids=PLANS)
-def test_every_plan_is_in_order_and_holds_what_its_exercise_needs(own):
+def test_every_plan_is_in_order_and_contains_the_cells_of_its_exercise(own):
     notebook = lesson(**own)
     for exercise in find_exercises(notebook):
         for plan in plans(notebook, exercise):
@@ -241,7 +241,7 @@ def test_no_plan_writes_or_runs_a_program_of_the_lesson(magic, area):
             assert shown.source not in sources(notebook, plan), plan.why
 
 
-def test_a_lent_cell_from_below_does_not_bring_the_other_exercises_along():
+def test_a_lent_later_cell_does_not_bring_cells_of_other_exercises():
     notebook = lesson(area='area = h', node='rate_hz = 1', at_end='h = 2')
     others = next(plans(notebook, find_exercises(notebook)[0]))
     assert 'h = 2' in sources(notebook, others)

@@ -24,7 +24,7 @@ at_most = 0.5
 grace_minutes = 15
 """
 CLASS = {
-    # name: (how it is handed in, whether a text is)
+    # name: (time of submission, whether the written question is answered)
     'zoe': ('2026-03-01 10:00:00 UTC', True),
     'ada': ('2026-03-29 21:59:59 UTC', True),
     'Zed': ('2026-03-31 22:00:01 UTC', True),

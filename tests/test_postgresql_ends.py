@@ -54,7 +54,7 @@ def handed_in(tmp_path_factory):
 
 @pytest.fixture
 def grade(tmp_path):
-    """Grades in a process of its own, without rooms; returns status, calls, and what it said."""
+    """Grades in a process of its own, without rooms; returns status, calls and output."""
     context = multiprocessing.get_context('forkserver')
 
     def grade_course(course, strike=None, strike_at=0, part='all'):
@@ -123,7 +123,7 @@ def test_a_crash_of_the_server_loses_no_grade_and_the_next_run_goes_on(
         ended.append(status)
         assert 'Traceback' not in said, said
         assert PASSWORD not in said
-        assert 'not graded' not in said  # nobody is given up
+        assert 'not graded' not in said  # no student is given up
         assert status == 0 or 'does not answer' in said, said
         assert status == 0 or 'run the same command again: it goes on' in said, said
         postgresql.start()
@@ -147,7 +147,7 @@ def crashed(programs, data, who):
     subprocess.run(stop, cwd='/', check=True, stdout=subprocess.DEVNULL, **who)
 
 
-def test_a_server_that_is_started_again_meanwhile_is_waited_for(course, postgresql):
+def test_wait_until_free_waits_for_a_server_that_is_started_again(course, postgresql):
     register(course, TOY)
     postgresql.stop()
     said = []

@@ -71,7 +71,7 @@ def edit(notebook, cell_id, change):
 # --- the page ------------------------------------------------------------------------------------
 
 
-def test_nothing_has_passed_on_a_fresh_copy(page, file):
+def test_no_exercise_has_passed_on_a_fresh_copy(page, file):
     assert state(page, file) == 'open'
     assert state(page, file, 'explain_counts') == 'by hand'
     assert not file.exists()
@@ -113,7 +113,7 @@ def test_another_edition_and_a_new_copy_of_the_course_show_passed_exercises(page
     chinese = page.parent / 'zh_CN' / 'index.ipynb'
     shutil.copytree(ROOT / f'notebooks/zh_CN/{LESSON}', chinese.parent / LESSON)
     shutil.copy(ROOT / 'notebooks/zh_CN/index.ipynb', chinese)
-    assert state(chinese, file) == 'passed'  # in the English one, where its answer is unchanged
+    assert state(chinese, file) == 'passed'  # in English, where the answer is unchanged
     newer = tmp_path / 'newer'
     shutil.copytree(page.parent, newer)
     shutil.rmtree(page.parent)  # the older one is gone
@@ -200,7 +200,7 @@ def test_a_damaged_file_is_reported_kept_and_replaced(page, file, content):
     assert file.with_name('passed_answers.damaged-2.json').exists()
 
 
-def test_a_newer_file_is_left_as_it_is(page, file):
+def test_a_file_of_a_newer_version_is_left_unchanged(page, file):
     file.parent.mkdir(parents=True)
     newer = b'{"schema": 2, "somewhere": "else"}'
     file.write_bytes(newer)

@@ -37,7 +37,7 @@ def test_a_terminal_shows_the_number_done_the_rate_and_the_remaining_time(monkey
     assert drawn
     done, _, rate = drawn[-1].partition('[')[2].partition('<')
     assert done.startswith('00:')
-    assert rate.startswith('00:')  # and not ?, as before the first one
+    assert rate.startswith('00:')  # not ?, as before the first submission
     assert 'notebook/s' in rate
     assert '1 with all points, 1 with fewer, 1 for a person' in rate
 

@@ -29,7 +29,7 @@ SPEC = Path(sys.prefix, 'share', 'jupyter', 'kernels', NAME, 'kernel.json')
 
 @pytest.fixture(autouse=True)
 def no_server_before():
-    """So that what a test leaves can be counted."""
+    """Close all fork servers, so that processes which a test leaves can be counted."""
     fork_servers.close_servers()
 
 
@@ -104,7 +104,7 @@ def left(monkeypatch):
     return left
 
 
-def test_a_notebook_runs_isolated_by_the_kernels_name(monkeypatch, tmp_path, left):
+def test_a_notebook_of_the_sandboxed_kernel_runs_isolated(monkeypatch, tmp_path, left):
     monkeypatch.setenv('SECRET', 'x')
     (tmp_path / 'hidden_tests.py').write_text('')
     looked, ros = run(LOOK, ROS, resources={'metadata': {'path': str(tmp_path)}})

@@ -34,12 +34,12 @@ timer = node.create_timer(1.0, lambda: publisher.publish(JointState()))
 """
 
 
-def test_every_command_is_a_verb():
+def test_the_readme_and_docs_name_exactly_the_verbs_of_course():
     usage = subprocess.run([ROOT / 'course', '--help'], capture_output=True, text=True).stdout
     verbs = set(re.findall(r'^  (\w+)', usage, re.MULTILINE))
     named = set(re.findall(r'\./course (\w+)', README + FOR_INSTRUCTORS))
     assert named - verbs == set()
-    assert verbs - named == set()  # nothing that is there is kept from the reader
+    assert verbs - named == set()  # no verb is missing from the documentation
 
 
 def test_every_nbgrader_command_exists():
@@ -76,7 +76,7 @@ def test_the_instructors_commands_follow_the_steps_in_docs_for_instructors():
     cells = [re.findall(r'`((?:\./course|\.venv/bin/jupyter) \w+)', row) for row in rows]
     steps = iter([command for commands in cells for command in commands])
     assert len(path) > 6
-    assert [command for command in path if command not in steps] == []  # each behind the last one
+    assert [command for command in path if command not in steps] == []  # in this order
 
 
 # --- measured figures ----------------------------------------------------------------------------
@@ -113,7 +113,7 @@ def test_each_figure_has_a_benchmark_and_is_in_docs_capacity():
 # --- the Chinese README --------------------------------------------------------------------------
 
 
-def test_the_chinese_readme_has_the_same_shape():
+def test_the_chinese_readme_has_the_same_sections_commands_and_figures():
     """The same sections, commands and measured figures, and a link to each document."""
     assert len(re.findall('^## ', CHINESE, re.MULTILINE)) == len(
         re.findall('^## ', README, re.MULTILINE)
@@ -129,7 +129,7 @@ def test_the_chinese_readme_has_the_same_shape():
     assert set(re.findall(documents, README)) - set(re.findall(documents, CHINESE)) == set()
 
 
-def test_the_chinese_readme_leads_to_each_lesson_that_is_in_chinese():
+def test_the_chinese_readme_links_to_each_translated_lesson():
     row = r'^\| \[(\d\d) (.+?)\]\(notebooks/(.*?)\) \| .+? \| (\d+) \|$'
     wanted = []
     for number, _, path, points in re.findall(row, README, re.MULTILINE):
@@ -142,7 +142,7 @@ def test_the_chinese_readme_leads_to_each_lesson_that_is_in_chinese():
     assert re.findall(row, CHINESE, re.MULTILINE) == wanted
 
 
-def test_each_readme_leads_to_the_other_and_both_to_files_that_exist():
+def test_the_readmes_link_to_one_another_and_to_files_that_exist():
     assert '(README.zh-CN.md)' in README.partition('## ')[0]
     assert '(README.md)' in CHINESE.partition('## ')[0]
     links = re.findall(r'\]\((?!https:)([^)#]+)[^)]*\)|src="([^"]+)"', CHINESE)
@@ -151,7 +151,7 @@ def test_each_readme_leads_to_the_other_and_both_to_files_that_exist():
     ] == []
 
 
-def test_the_chinese_readme_names_commands_that_exist_and_code_that_the_english_one_has():
+def test_the_chinese_readme_has_the_commands_and_code_of_the_english_readme():
     verbs = set(re.findall(r'\./course (\w+)', README))
     assert set(re.findall(r'\./course (\w+)', CHINESE)) - verbs == set()
     code = [
