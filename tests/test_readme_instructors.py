@@ -1,4 +1,4 @@
-"""The page for instructors, walked by somebody who does what it says and no more."""
+"""The page for instructors, followed step by step exactly as it is written."""
 
 import csv
 import json
@@ -24,7 +24,7 @@ STUDENTS = (
     *('Ada Lovelace', 'Bob Ross', 'Çelik Ayşe', 'Дмитрий Петров', 'Émile Zola'),
     *('Fatima al-Sayed', 'Grace Hopper', "Heather O'Neill", 'Ines Müller', '李军'),
 )
-"""As a course management system names them."""
+"""Names as a course management system exports them."""
 
 
 class Walk:
@@ -37,7 +37,7 @@ class Walk:
         self.papers = dict(zip(STUDENTS, papers, strict=True))
 
     def course(self, command):
-        """Do what a cell of the page says, with what one has; return what it prints."""
+        """Run the command of a cell of the page; return its output and the name of its step."""
         _, verb, *arguments = re.sub(r' \[.*?\]', '', command).split()
         arguments = [str(self.archive) if a == 'FOLDER' else a for a in arguments]
         step = '_'.join([verb, *(a.strip('-') for a in arguments if a.startswith('--'))])
@@ -107,7 +107,7 @@ class Walk:
         }
 
     def after_scores_format(self, out):
-        """What the system takes back has the numbers that it gave."""
+        """The scores to be uploaded have the participant numbers of the download."""
         found = {}
         for path in map(Path, out.split('\n')[:-1]):
             with path.open(encoding='utf-8-sig', newline='') as file:
@@ -125,7 +125,7 @@ class Walk:
         assert len(names) == len(STUDENTS)
 
 
-def test_the_walk_knows_each_step_of_the_page():
+def test_the_walk_checks_each_step_of_the_instructors_page():
     _, _, *rows = TABLE.splitlines()
     assert len(STEPS) == len(rows)
     steps = [re.sub(r' \[.*?\]', '', command).split()[1:] for command in COMMANDS]
@@ -143,7 +143,7 @@ def test_a_new_instructor_gets_from_the_bundle_to_the_scores(tmp_path):
         out, verb = walk.course(command)
         getattr(walk, f'after_{verb}')(out)
 
-    # the page's word on nbgrader's own commands
+    # the page's claim about nbgrader's own commands
     said = ' '.join(PAGE.split())
     assert 'Its own commands (' in said
     assert '`export`) and its formgrader work in this folder and give the same scores' in said

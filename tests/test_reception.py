@@ -40,7 +40,7 @@ def inbound(came_in):
 
 
 def refused(course):
-    """Return why entries were refused, and that the others were graded."""
+    """Return why each entry was refused; assert that zoe's alone was graded."""
     found = arrivals(course)
     assert [each.student_id for each in found if each.state == GRADED] == ['zoe']
     return {each.entry: each.reason for each in found if each.state == REFUSED}
@@ -48,7 +48,7 @@ def refused(course):
 
 @contextmanager
 def deep(folder, levels):
-    """Let folders lie in each other, so many that no path names the deepest."""
+    """Nest folders so deeply that no path can name the deepest one."""
     folder.mkdir()
     here = os.open('.', os.O_RDONLY)
     try:
@@ -69,7 +69,7 @@ def deep(folder, levels):
         os.close(here)
 
 
-def test_a_file_beside_a_notebook_has_any_name(course, inbound, at_once):
+def test_a_file_beside_a_notebook_may_have_a_name_that_is_not_utf_8(course, inbound, at_once):
     folder = put_there(course, inbound, 'zoe')
     for name in (b'x\xff.txt', b'x\xff.py'):
         (folder / os.fsdecode(name)).touch()
@@ -78,7 +78,9 @@ def test_a_file_beside_a_notebook_has_any_name(course, inbound, at_once):
 
 
 @pytest.mark.parametrize('name', [b'mallory\xff.zip', b'mallory\xff.ipynb', b'mallory\xff'])
-def test_an_entry_has_any_name(course, inbound, at_once, name):
+def test_an_entry_with_a_name_that_is_not_utf_8_is_refused_under_an_escaped_name(
+    course, inbound, at_once, name
+):
     put_there(course, inbound, 'zoe')
     path = inbound / os.fsdecode(name)
     if path.suffix:
@@ -95,7 +97,7 @@ def test_an_entry_has_any_name(course, inbound, at_once, name):
     assert serve_here(course, inbound) == []
 
 
-def test_names_that_look_alike_are_two_entries(course, inbound, at_once):
+def test_two_names_that_are_printed_alike_stay_two_entries(course, inbound, at_once):
     """Otherwise each would look like a changed version of the other, forever."""
     for name in (b'a\xff.ipynb', b'a\\xff.ipynb'):
         (inbound / os.fsdecode(name)).write_text('{}')
@@ -104,7 +106,7 @@ def test_names_that_look_alike_are_two_entries(course, inbound, at_once):
     assert len({each.entry for each in arrivals(course)}) == 2
 
 
-def test_a_name_in_an_archive_is_told_as_it_can_be_stored(course, inbound, at_once):
+def test_a_name_in_an_archive_that_is_not_utf_8_is_reported_escaped(course, inbound, at_once):
     put_there(course, inbound, 'zoe')
     member = tarfile.TarInfo(os.fsdecode(b'bob\xff_00_toy.ipynb'))
     with tarfile.open(inbound / f'mallory_{TOY}.tar', 'w') as box:
@@ -114,16 +116,14 @@ def test_a_name_in_an_archive_is_told_as_it_can_be_stored(course, inbound, at_on
     assert reason.startswith('it is named after bob\\xff, and in the archive of mallory')
 
 
-def test_a_folder_of_a_thousand_levels_is_looked_at_as_deep_as_any_is_taken(
-    course, inbound, at_once
-):
+def test_a_folder_of_a_thousand_levels_is_refused_with_the_allowed_depth(course, inbound, at_once):
     put_there(course, inbound, 'zoe')
     with deep(inbound / 'mallory', 1_100):
         serve_here(course, inbound)
     assert refused(course) == {'mallory': f'it is more than {MAX_PARTS} folders deep'}
 
 
-def test_all_that_can_be_taken_is_part_of_what_is_looked_at(inbound, at_once):
+def test_a_change_at_the_deepest_allowed_level_changes_the_fingerprint(inbound, at_once):
     with deep(inbound / 'ada', MAX_PARTS - 1):
         deepest = inbound.joinpath('ada', *['d'] * (MAX_PARTS - 1))
         (deepest / 'a.ipynb').write_text('1')
@@ -133,7 +133,7 @@ def test_all_that_can_be_taken_is_part_of_what_is_looked_at(inbound, at_once):
     assert before.fingerprint != after.fingerprint
 
 
-def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
+def test_an_unreadable_entry_is_reported_once_and_graded_when_it_can_be_read(
     course, inbound, at_once, monkeypatch
 ):
     put_there(course, inbound, 'zoe')
@@ -166,7 +166,7 @@ def test_what_can_not_be_looked_at_is_told_once_and_taken_once_it_can_be(
     assert len(arrivals(course)) == 3
 
 
-def test_what_is_gone_meanwhile_is_not_told(course, inbound, at_once, monkeypatch):
+def test_an_entry_that_vanishes_while_it_is_read_is_skipped(course, inbound, at_once, monkeypatch):
     put_there(course, inbound, 'eve')
 
     def gone(folder, name, status):
@@ -176,7 +176,7 @@ def test_what_is_gone_meanwhile_is_not_told(course, inbound, at_once, monkeypatc
     assert list(new_entries(inbound, {})) == []
 
 
-def test_whatever_goes_wrong_with_an_entry_costs_only_itself(
+def test_an_unexpected_error_in_one_entry_refuses_only_that_entry(
     course, inbound, at_once, monkeypatch, caplog
 ):
     put_there(course, inbound, 'zoe')
@@ -200,7 +200,9 @@ def test_whatever_goes_wrong_with_an_entry_costs_only_itself(
 @pytest.mark.parametrize(
     'error', [GradebookError('it is locked'), OSError(28, 'No space left on device')]
 )
-def test_what_would_meet_the_next_one_too_ends_it(course, inbound, at_once, monkeypatch, error):
+def test_serving_ends_at_an_error_that_every_entry_would_meet(
+    course, inbound, at_once, monkeypatch, error
+):
     put_there(course, inbound, 'zoe')
 
     def fails(*_):
@@ -223,7 +225,7 @@ STEPS = {
 
 
 @pytest.mark.parametrize('step', STEPS)
-def test_whatever_goes_wrong_later_costs_only_one(
+def test_an_unexpected_error_after_intake_affects_only_one_submission(
     course, inbound, at_once, monkeypatch, caplog, step
 ):
     error, state, reason = STEPS[step]
@@ -252,10 +254,10 @@ def test_whatever_goes_wrong_later_costs_only_one(
 
 
 @pytest.mark.parametrize('error', [DataError, OperationalError])
-def test_what_the_database_can_not_do_for_anybody_is_nobody_s_fault(
+def test_a_submission_is_refused_for_bad_data_but_not_for_a_database_outage(
     course, inbound, at_once, monkeypatch, error
 ):
-    """Those who hand in again have their former score kept: their work waits for the database."""
+    """A refusal would leave students their former score, so their work waits for the database."""
     put_there(course, inbound, 'zoe')
 
     def fails(*_):
@@ -274,7 +276,9 @@ def test_what_the_database_can_not_do_for_anybody_is_nobody_s_fault(
     assert bool(said) == (error is OperationalError)
 
 
-def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_once, monkeypatch):
+def test_the_next_process_keeps_replaced_submissions_that_were_not_yet_kept(
+    course, inbound, at_once, monkeypatch
+):
     for number in range(2):
         (inbound / f'zoe_{TOY}.ipynb').write_text(
             nbformat.writes(answered(course, f'# {number}\n{RIGHT}'))
@@ -292,7 +296,9 @@ def test_what_is_yet_to_be_kept_is_kept_by_the_next_process(course, inbound, at_
 
 
 @pytest.mark.parametrize('step', ['put_in_place', 'write_page'])
-def test_a_full_disk_ends_it_and_the_next_one_goes_on(course, inbound, at_once, monkeypatch, step):
+def test_a_full_disk_ends_serving_and_the_next_process_goes_on(
+    course, inbound, at_once, monkeypatch, step
+):
     put_there(course, inbound, 'zoe')
 
     def full(*_):
@@ -307,7 +313,7 @@ def test_a_full_disk_ends_it_and_the_next_one_goes_on(course, inbound, at_once, 
     assert course.folder('feedback', 'zoe', TOY).exists()
 
 
-def test_once_ends_when_all_was_looked_at(course, inbound, at_once, monkeypatch):
+def test_serving_once_ends_after_every_entry_was_looked_at(course, inbound, at_once, monkeypatch):
     monkeypatch.setattr(rounds_module, 'MOST_FILES_AT_ONCE', 1)
     for name in ('a', 'b', 'c'):
         (inbound / name).mkdir()
@@ -316,7 +322,7 @@ def test_once_ends_when_all_was_looked_at(course, inbound, at_once, monkeypatch)
     assert any('graded: 00_toy of zoe' in line for line in serve_here(course, inbound))
 
 
-def test_whose_an_entry_is_the_user_tells_and_else_its_name(inbound, at_once):
+def test_the_owner_of_an_entry_is_its_linux_user_or_else_comes_from_its_name(inbound, at_once):
     for name in ('ada+00_toy+2026+x1', 'ada_00_toy.ipynb', 'bob', 'Zoe Z_8001_assignsubmission'):
         (inbound / name).touch()
     if os.geteuid() == 0:
@@ -328,7 +334,7 @@ def test_whose_an_entry_is_the_user_tells_and_else_its_name(inbound, at_once):
     assert os.geteuid() or owners['eve+00_toy'] == 'user 4001'
 
 
-def test_a_status_page_is_written_of_any_reason(course, inbound):
+def test_a_status_page_is_written_for_a_reason_with_lone_surrogates(course, inbound):
     with opened_queue(course.gradebook, inbound) as queue:
         stored = queue.add('a', 'b', [Arrival(0, 'a', 0.0, REFUSED, reason='x\udcff \ud800')])
         write_status_page(course, queue)

@@ -34,7 +34,9 @@ def inbound(came_in):
     return came_in
 
 
-def test_what_a_later_one_replaces_delays_nobody_s_grading(course, inbound, at_once, monkeypatch):
+def test_submissions_that_a_later_one_replaces_delay_no_other_student(
+    course, inbound, at_once, monkeypatch
+):
     """Storing many large submissions takes long, so others are graded in between."""
     monkeypatch.setattr(desk_module, 'BUDGET_SEC', 0.0)
     monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)  # all have come in before the first turn
@@ -78,7 +80,7 @@ def desk(course, inbound):
 
 @pytest.fixture
 def taken(monkeypatch):
-    """Let entries be there, and taking one in be a wait; return what was taken, in its order."""
+    """Replace the folder and taking in by a list and a wait; return it and the names taken in."""
     there, names = [], []
 
     def new(folder, seen, rounds):
@@ -94,7 +96,7 @@ def taken(monkeypatch):
     return there, names
 
 
-def test_between_two_long_ones_others_things_are_done(desk, taken, monkeypatch):
+def test_taking_in_pauses_after_each_entry_that_takes_long(desk, taken, monkeypatch):
     there, names = taken
     there += [entry('1', 'mallory'), entry('2', 'mallory')]
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
@@ -103,7 +105,7 @@ def test_between_two_long_ones_others_things_are_done(desk, taken, monkeypatch):
     assert not look(desk)
 
 
-def test_many_short_ones_are_taken_in_at_once(desk, taken, monkeypatch):
+def test_many_entries_that_take_a_short_time_are_taken_in_at_once(desk, taken, monkeypatch):
     there, names = taken
     there += [entry('1', 'ada'), entry('2', 'bob'), entry('3', 'zoe')]
     monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)
@@ -111,7 +113,7 @@ def test_many_short_ones_are_taken_in_at_once(desk, taken, monkeypatch):
     assert names == ['1', '2', '3']
 
 
-def test_who_hands_in_much_waits_for_who_hands_in_something(desk, taken, monkeypatch):
+def test_a_student_with_many_entries_waits_for_students_with_one(desk, taken, monkeypatch):
     there, names = taken
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
     there += [entry(f'mallory {number}', 'mallory', number) for number in range(1, 5)]
@@ -122,8 +124,8 @@ def test_who_hands_in_much_waits_for_who_hands_in_something(desk, taken, monkeyp
     assert names[3:] == ['mallory 2', 'mallory 3', 'mallory 4']
 
 
-def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkeypatch):
-    """If only names decide whose an entry is, anybody can own many entries."""
+def test_new_owners_do_not_delay_students_who_came_before_them(desk, taken, monkeypatch):
+    """Where only its name decides who owns an entry, one student can pose as many owners."""
     there, names = taken
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
     there.append(entry('ada 1', 'ada', 1))
@@ -134,7 +136,7 @@ def test_new_owners_keep_nobody_waiting_who_came_before_them(desk, taken, monkey
     assert names == ['ada 1', 'ada 2']
 
 
-def test_whose_many_files_take_long_to_look_at_keeps_nobody_from_being_seen(
+def test_a_student_with_many_files_does_not_keep_other_entries_from_being_seen(
     inbound, at_once, monkeypatch
 ):
     """Neither new nor known files delay others, and all of them are collected in the end."""
@@ -167,7 +169,7 @@ def test_whose_many_files_take_long_to_look_at_keeps_nobody_from_being_seen(
     assert not rounds.is_under_way
 
 
-def test_the_many_entries_of_one_hide_nobodys_that_waits_for_a_person(course, inbound, at_once):
+def test_an_older_refused_entry_is_still_listed_after_many_newer_ones(course, inbound, at_once):
     (inbound / 'honest_00_tyo.ipynb').write_text('{}')
     for number in range(SHOWN + 5):
         (inbound / f'mallory{number}_nothing.ipynb').write_text('{}')
@@ -181,8 +183,10 @@ def test_the_many_entries_of_one_hide_nobodys_that_waits_for_a_person(course, in
 
 
 @pytest.mark.parametrize(('limit', 'most'), [('MOST_KEPT', 2), ('MOST_KEPT_BYTES', 50_000)])
-def test_nobody_fills_the_disk_by_handing_in(course, inbound, at_once, monkeypatch, limit, most):
-    """What is left out lies where it was handed in, and counts for nobody else."""
+def test_a_student_cannot_fill_the_disk_by_submitting_again_and_again(
+    course, inbound, at_once, monkeypatch, limit, most
+):
+    """A refused submission stays where it was handed in, and uses up nobody else's limit."""
     monkeypatch.setattr(intake, limit, most)
     notebook = answered(course, RIGHT)
     for number in range(4):
@@ -204,14 +208,14 @@ def test_nobody_fills_the_disk_by_handing_in(course, inbound, at_once, monkeypat
     assert not [each for each in arrivals(course) if each.state == REFUSED]
 
 
-def test_what_is_refused_again_and_again_is_listed_once(course, inbound, at_once):
+def test_an_entry_that_is_refused_again_and_again_is_listed_once(course, inbound, at_once):
     for number in range(3):
         (inbound / 'mallory_nothing.ipynb').write_text('{}' + ' ' * number)
         serve_here(course, inbound)
     assert len(arrivals(course)) == 1
 
 
-def test_what_a_killed_process_was_grading_is_not_said_to_be_graded_just_now(course, inbound):
+def test_a_submission_left_by_a_killed_process_is_not_shown_as_being_graded(course, inbound):
     with opened_queue(course.gradebook, inbound) as queue:
         queue.add(f'zoe_{TOY}', '1', [Arrival(0, f'zoe_{TOY}', 1.0, GRADING, 'zoe', TOY)])
         said = list(status_lines(course, queue))

@@ -17,7 +17,7 @@ def is_documented(thing):
 
 
 def documented(thing):
-    """Return what a class or module has of its own that the reference documents, by name."""
+    """Return the members of a class or module that the reference documents, with their names."""
     names = getattr(thing, '__all__', [name for name in vars(thing) if name[:1] != '_'])
     own = [(name, inspect.getattr_static(thing, name)) for name in names]
     if inspect.isclass(thing):
@@ -46,7 +46,7 @@ def test_everything_public_has_a_docstring_and_types(page, name):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_the_pages_can_be_built(tmp_path):
+def test_the_reference_pages_can_be_built(tmp_path):
     command = [sys.executable, '-P', str(ROOT / 'docs/build_reference.py'), str(tmp_path)]
     run = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert (run.returncode, run.stderr) == (0, '')

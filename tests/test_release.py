@@ -38,7 +38,7 @@ def test_a_release_holds_no_answer_and_no_hidden_test(course):
     assert 'Other numbers are doubled too' in text
 
 
-def test_a_release_keeps_what_a_demonstration_shows_and_clears_the_rest(course):
+def test_a_release_keeps_outputs_of_demonstrations_and_clears_all_others(course):
     shown = cells(course)['shown']
     assert shown.outputs[0].text == 'shown\n'
     assert shown.outputs[1].data['image/png'].strip() == PIXEL
@@ -54,7 +54,7 @@ def test_a_release_carries_only_the_metadata_it_needs(course):
     assert keys == {'nbgrader', 'tags', 'deletable', 'editable'}
 
 
-def test_a_release_tells_validate_what_is_hidden_and_nothing_of_it(course):
+def test_a_release_records_roles_and_fingerprints_and_which_cells_hide_tests(course):
     record = course.release(TOY).metadata.my_robot_basics.cells
     assert {name: mark.role for name, mark in record.items()}.items() >= {
         ('setup', 'setup'), ('shown', 'demo'), ('double', 'answer'), ('double-reset', 'locked'),
@@ -97,7 +97,7 @@ def test_cells_may_have_the_ids_that_jupyterlab_gives_them(tmp_path):
 
 
 @pytest.mark.parametrize(('shown', 'hidden'), VISIBLE_PARTS.values(), ids=VISIBLE_PARTS)
-def test_a_check_is_marked_by_how_much_of_it_is_hidden(shown, hidden):
+def test_a_check_is_marked_as_hidden_in_part_or_as_a_whole(shown, hidden):
     source = f'"""A title"""\n{shown}\n### BEGIN HIDDEN TESTS\n1 / 0\n### END HIDDEN TESTS'
     marks = {'grade': True, 'grade_id': 'a', 'points': 1}
     cell = nbformat.v4.new_code_cell(source, id='a', metadata={'nbgrader': marks})
@@ -123,7 +123,7 @@ FIXED = """def double(x):
     ### BROKEN:     return x - y"""
 
 
-def test_an_answer_to_be_fixed_is_released_broken_and_graded_fixed(course):
+def test_an_answer_with_broken_lines_is_released_with_them_in_place_of_the_solution(course):
     before = course.release_path(TOY).read_bytes()
     lesson = toy_lesson()
     lesson.cells[4].source = FIXED
@@ -157,12 +157,12 @@ def test_an_answer_to_be_fixed_is_released_broken_and_graded_fixed(course):
         '# YOUR CODE HERE\n### BROKEN:\n',
     ],
 )
-def test_broken_lines_that_no_stub_waits_for_are_refused(source):
+def test_broken_lines_that_do_not_follow_a_solution_are_refused(source):
     with pytest.raises(CourseError, match='right after ### END SOLUTION'):
         broken(source)
 
 
-def test_a_failure_leaves_the_former_release_as_it_was(course):
+def test_a_failed_release_leaves_the_former_release_unchanged(course):
     before = course.release_path(TOY).read_bytes()
     broken = toy_lesson()
     broken.cells[4].source += '\n\n### BROKEN: x = 1'
@@ -203,14 +203,14 @@ UNPAIRED = {
 
 
 @pytest.mark.parametrize(('source', 'fault'), UNPAIRED.values(), ids=UNPAIRED)
-def test_a_marker_without_its_other_one_is_named_with_what_to_add(source, fault):
+def test_a_misplaced_or_unpaired_marker_is_reported_with_its_fix(source, fault):
     lesson = toy_lesson()
     assert list(marker_faults(lesson)) == []
     lesson.cells[7].source = source
     assert list(marker_faults(lesson)) == [f'the cell `double-hidden`, {fault}']
 
 
-def test_a_lesson_with_a_marker_alone_is_not_released_and_named(course):
+def test_a_lesson_with_an_unpaired_marker_is_not_released(course):
     lesson = toy_lesson()
     lesson.cells[7].source = lesson.cells[7].source.replace('### END HIDDEN TESTS', '')
     write_source(course, lesson)
@@ -249,7 +249,7 @@ OUTSIDE = {
 
 
 @pytest.mark.parametrize(('lesson', 'said'), OUTSIDE.values(), ids=OUTSIDE)
-def test_a_check_outside_of_an_exercise_is_refused_with_what_to_add(lesson, said):
+def test_a_check_outside_of_an_exercise_is_reported_with_the_missing_cell(lesson, said):
     faults = '; '.join(outside_of_exercises(lesson))
     assert all(words in faults for words in said)
 
@@ -275,7 +275,7 @@ def save_in_jupyterlab(notebook):
 
 
 @pytest.mark.parametrize('work', [answer, run_a_cell, save_in_jupyterlab])
-def test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced(course, work):
+def test_work_in_a_release_is_copied_before_the_release_is_replaced(course, work):
     path = course.release_path(TOY)
     before = path.read_bytes()
     notebook = course.release(TOY)
@@ -296,7 +296,7 @@ def test_what_somebody_typed_into_a_release_is_kept_before_it_is_replaced(course
 
 
 @pytest.mark.slow
-def test_a_file_that_is_no_notebook_any_more_is_kept_too(course):
+def test_a_release_that_is_no_notebook_any_more_is_copied_before_it_is_replaced(course):
     path = course.release_path(TOY)
     path.write_text('{')
     said = []
@@ -316,7 +316,7 @@ def test_a_release_that_nobody_touched_is_replaced_without_a_copy(course):
     assert not [each for each in said if 'kept as' in each]
 
 
-def test_an_unknown_assignment_is_named_with_those_there_are(course):
+def test_an_unknown_assignment_is_reported_with_the_existing_ones(course):
     with pytest.raises(CourseError, match=f"no assignment '99'.*{TOY}"):
         release(course, '99')
 
@@ -345,7 +345,7 @@ def test_a_stale_release_and_strange_files_are_found(course):
         ('shown-output', 'return x + x  # the secret answer\n'),
     ],
 )
-def test_each_leak_is_found(course, cell, leak):
+def test_each_kind_of_leak_into_a_release_is_found(course, cell, leak):
     path = course.release_path(TOY)
     before = path.read_text()
     notebook = json.loads(before)
@@ -360,7 +360,7 @@ def test_each_leak_is_found(course, cell, leak):
     assert not list(leaks_of(course, TOY, course.root / 'notebooks'))
 
 
-def test_an_answer_that_a_demonstration_prints_is_not_released(course):
+def test_a_lesson_is_not_released_if_a_demonstration_prints_an_answer(course):
     lesson = toy_lesson()
     lesson.cells[2].outputs[0].text = 'return x + x  # the secret answer'
     write_source(course, lesson)
@@ -369,11 +369,11 @@ def test_an_answer_that_a_demonstration_prints_is_not_released(course):
     write_source(course, toy_lesson())
 
 
-def test_the_lessons_of_this_course_are_released_fresh_and_leak_nothing():
+def test_the_releases_of_this_course_are_up_to_date_and_leak_nothing():
     assert stale_or_leaking(Course()) == []
 
 
-def test_only_released_cells_that_check_answers_let_run_all_go_on():
+def test_only_locked_cells_of_releases_may_raise_without_stopping_run_all():
     course = Course()
     for name in course.assignments():
         for cell in course.release(name).cells:

@@ -53,7 +53,7 @@ def test_a_recorded_grade_is_replayed_and_compared_and_nothing_is_written(graded
     assert status == 0
 
 
-def test_other_inputs_are_told_apart(graded, capsys):
+def test_a_replay_with_another_seed_reports_differing_verdicts(graded, capsys):
     other = f'{int(graded.seed(TOY, "ada"), 16) ^ 1:x}'
     status, lines = replayed(graded, capsys, '--student', 'ada', '--seed', other)
     assert lines[0].endswith(f'seed {other}')
@@ -65,13 +65,13 @@ def test_other_inputs_are_told_apart(graded, capsys):
     assert status == 1
 
 
-def test_what_cannot_be_read_is_replayed_too(graded, capsys):
+def test_an_unreadable_submission_is_replayed_as_stored(graded, capsys):
     status, lines = replayed(graded, capsys, '--student', 'eve', '--seed', 'recorded')
     assert status == 0
     assert all(line.endswith('as stored') for line in lines[1:3])
 
 
-def test_the_recorded_seed_outlives_a_change_of_the_lesson(graded, capsys):
+def test_the_recorded_seed_is_replayed_after_a_change_of_the_lesson(graded, capsys):
     former = graded.seed(TOY, 'ada')
     lesson = toy_lesson()
     lesson.cells[0].source += ' '
@@ -85,7 +85,7 @@ def test_the_recorded_seed_outlives_a_change_of_the_lesson(graded, capsys):
     assert 'the lesson was changed since' in lines[1]
 
 
-def test_only_what_was_graded_has_a_seed(graded, capsys):
+def test_a_recorded_seed_needs_a_graded_submission_and_is_not_stored_again(graded, capsys):
     submit(graded, 'zoe', answered(graded, ANSWER))
     try:
         assert main(['grade', '--student', 'zoe', '--seed', 'recorded'], course=graded) == 1
@@ -96,14 +96,14 @@ def test_only_what_was_graded_has_a_seed(graded, capsys):
     assert 'scores with recorded seeds are stored already' in capsys.readouterr().err
 
 
-def test_to_store_needs_a_seed(graded, capsys):
+def test_the_option_store_needs_a_seed(graded, capsys):
     before = everything(graded)
     assert main(['grade', '--store'], course=graded) == 1
     assert '--store needs --seed HEX: ./course grade alone stores' in capsys.readouterr().err
     assert everything(graded) == before
 
 
-def test_asked_to_it_stores(graded, capsys):
+def test_a_replay_with_the_option_store_stores_its_scores_and_seed(graded, capsys):
     other = f'{int(graded.seed(TOY, "ada"), 16) ^ 1:x}'
     before = everything(graded)
     assert main(['grade', '--student', 'ada', '--seed', other, '--store'], course=graded) == 0
@@ -113,7 +113,7 @@ def test_asked_to_it_stores(graded, capsys):
     assert lines[0].endswith(f'seed {other}')
 
 
-def test_no_page_tells_the_seed(graded):
+def test_neither_feedback_nor_scores_contain_the_seed(graded):
     assert main(['feedback'], course=graded) == 0
     assert main(['scores'], course=graded) == 0
     kept = graded.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb'
@@ -124,7 +124,7 @@ def test_no_page_tells_the_seed(graded):
     assert not [path for path in told if seed[:-1] in path.read_text()]
 
 
-def test_the_rooms_record_the_seed_they_were_given(graded):
+def test_execution_records_the_given_seed_in_the_notebook(graded):
     notebook = graded.source(TOY)
     notebook.metadata[KEY] = {'notes': [], 'problem': 'that nothing has to be run'}
     assert execute(notebook, seed='abc').notebook.metadata[KEY].seed == 'abc'

@@ -50,7 +50,7 @@ def reported(course, rows, run=RUN):
     return facts, page.read_text(encoding='utf-8')
 
 
-def test_students_with_the_same_reason_are_counted_once_and_the_most_common_comes_first(course):
+def test_a_reason_lists_all_its_students_and_the_most_common_one_comes_first(course):
     rows = [
         graded(course, 'ada', {'double-hidden': 'expected 42, saw 1: count again'}),
         graded(
@@ -74,13 +74,13 @@ def test_students_with_the_same_reason_are_counted_once_and_the_most_common_come
 
 
 def words_of(html):
-    """What a page shows and says, without styles and code."""
+    """Return the text and the labels of a page, without styles and code."""
     html = re.sub('<style>.*?</style>|<code>.*?</code>', '', html, flags=re.DOTALL)
     labels = re.findall('aria-label="(.*?)"', html)
     return ' '.join([*labels, re.sub('<[^>]*>', ' ', html)])
 
 
-def test_the_page_speaks_another_language_where_it_is_asked_to(course):
+def test_the_report_page_is_in_the_requested_language_and_the_json_is_not(course):
     rows = [
         graded(course, 'ada', {}),
         graded(course, '小明', {'double-hidden': 'expected 2, saw 17: x'}, explained=''),
@@ -102,10 +102,10 @@ def test_the_page_speaks_another_language_where_it_is_asked_to(course):
     theirs = json.loads(page.with_suffix('.json').read_text(encoding='utf-8'))
     for volatile in ('began', 'seconds', 'per_minute'):
         facts.pop(volatile), theirs.pop(volatile)
-    assert theirs == facts  # for programs
+    assert theirs == facts  # programs read it: it is not translated
 
 
-def test_each_check_has_its_share_of_those_who_have_a_score(course):
+def test_each_check_has_the_share_of_scored_students_who_passed(course):
     rows = [
         graded(course, 'ada', {}),
         graded(course, 'bob', {'double-check': 'no'}),
@@ -121,7 +121,7 @@ def test_each_check_has_its_share_of_those_who_have_a_score(course):
     assert (toy.scores, toy.mean, toy.median) == ((2.0, 2.0, 3.0), 7 / 3, 2.0)
 
 
-def test_whatever_needs_a_person_is_listed_with_why(course):
+def test_each_submission_or_check_that_needs_a_person_is_listed_with_its_reason(course):
     rows = [
         graded(course, 'ada', {}),
         graded(course, 'bob', {'double-check': '?'}, explained=''),
@@ -142,7 +142,7 @@ def test_whatever_needs_a_person_is_listed_with_why(course):
     assert (whole['x.ipynb',], whole['kim',]) == (rows[4].reason, rows[5].reason)
 
 
-def test_a_hundred_for_the_same_reason_are_one_line_for_a_person(course):
+def test_submissions_that_wait_for_the_same_reason_share_one_line(course):
     rows = [graded(course, name, {'double-check': '?'}) for name in ('ada', 'bob', 'eve')]
     broken, written = tally(course, rows).looks
     assert (broken.words, broken.students) == ('?', ('ada', 'bob', 'eve'))
@@ -152,7 +152,7 @@ def test_a_hundred_for_the_same_reason_are_one_line_for_a_person(course):
     assert html.count(WRITTEN) == 1
 
 
-def test_what_most_missed_comes_first_with_what_they_were_told(course):
+def test_the_check_that_most_students_missed_comes_first_with_its_commonest_reason(course):
     rows = [
         graded(course, 'ada', {'double-check': 'a', 'double-hidden': 'saw 1'}, explained=''),
         graded(course, 'bob', {'double-check': 'b'}, explained=''),
@@ -176,7 +176,7 @@ def test_what_most_missed_comes_first_with_what_they_were_told(course):
     assert 'what waits for a person counts nothing yet' in html
 
 
-def test_what_a_person_has_scored_waits_no_longer(course):
+def test_a_check_that_a_person_has_scored_waits_no_longer(course):
     row = graded(course, 'ada', {})
     with Gradebook(course.db_url) as book:
         book.find_grade('explain', TOY, TOY, 'ada').manual_score = 2.0
@@ -186,7 +186,7 @@ def test_what_a_person_has_scored_waits_no_longer(course):
     assert counted.assignments[0].checks[2].passed == 1
 
 
-def test_the_json_says_what_happened_how_long_it_took_and_with_what(course):
+def test_the_json_report_contains_counts_times_points_and_the_environment(course):
     rows = [
         graded(course, 'ada', {}, seconds=2.0),
         graded(course, 'bob', {}, seconds=9.5),
@@ -212,7 +212,7 @@ def test_the_json_says_what_happened_how_long_it_took_and_with_what(course):
     assert all(value in html for value in facts['environment'].values() if "'" not in value)
 
 
-def test_the_report_says_whether_there_was_a_sandbox_and_which_inputs(course, monkeypatch):
+def test_the_report_names_the_isolation_and_the_seed_of_a_replay(course, monkeypatch):
     rows = [graded(course, 'ada', {})]
     said = set()
     for sandbox in (True, False):
@@ -225,7 +225,7 @@ def test_the_report_says_whether_there_was_a_sandbox_and_which_inputs(course, mo
     assert facts['environment']['inputs of hidden tests'] == 'replayed from seed abc'
 
 
-def test_nothing_that_a_student_wrote_gets_into_the_page_as_it_is(course):
+def test_text_from_students_is_escaped_in_the_report(course):
     rows = [
         graded(course, 'ada', {'double-check': f'expected 2, saw {SCRIPT}\x1b[31m\u202e: try'}),
         SubmissionOutcome(SCRIPT, SCRIPT, None, SCRIPT),
@@ -238,7 +238,7 @@ def test_nothing_that_a_student_wrote_gets_into_the_page_as_it_is(course):
     assert not re.search(r'(?i)<script|\son\w+=|javascript:|https?://', html)
 
 
-def test_every_student_has_a_row_of_scores_whatever_was_graded_in_this_run(course):
+def test_every_student_has_a_row_of_scores_even_if_not_graded_in_this_run(course):
     rows = [graded(course, 'ada'), graded(course, 'bob', {'double-hidden': 'wrong'}, explained='')]
     facts, page = reported(course, rows[:1])
     assert facts['totals']['max_scores'] == {TOY: 5.0}
@@ -249,12 +249,12 @@ def test_every_student_has_a_row_of_scores_whatever_was_graded_in_this_run(cours
     assert re.search(r'scope="row">ada</th>.* data-label="Total">3 …</td>', page)
 
 
-def test_a_name_that_is_no_text_is_reported_too(course):
+def test_a_student_name_that_is_not_utf_8_is_reported_escaped(course):
     facts, _ = reported(course, [SubmissionOutcome('\udcff', '', None, 'not UTF-8')])
     assert facts['looks'][0]['students'] == ['\\udcff']
 
 
-def test_two_runs_of_one_second_keep_their_reports(course):
+def test_runs_that_begin_in_the_same_second_keep_their_own_reports(course):
     rows = [graded(course, 'ada', {})]
     pages = [write_report(course, RUN, rows) for _ in range(3)]
     assert [page.parent.name for page in pages] == [
@@ -269,7 +269,7 @@ def test_two_runs_of_one_second_keep_their_reports(course):
 
 
 @pytest.mark.starts
-def test_a_demo_leaves_a_report_too(released, tmp_path, capsys, monkeypatch):
+def test_a_demo_writes_a_report(released, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
     samples = tmp_path / 'samples'
     samples.mkdir()

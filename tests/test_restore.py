@@ -1,4 +1,4 @@
-"""Healing: whatever became of a notebook, it has its source's cells again, and the answers."""
+"""Restoring: however a notebook was changed, it gets its source's cells and keeps answers."""
 
 import nbformat
 import pytest
@@ -12,7 +12,7 @@ from grader.notebook.restore import KEY, grade_id, make_template, restore, role
 ANSWER = 'def double(x):\n    return 2 * x'
 ANSWERS = ('double', 'explain')
 KEPT = ('grade', 'locked', 'setup')
-"""Roles of cells whose text is the template's, come what may."""
+"""Roles of cells whose text is always that of the template."""
 
 
 @pytest.fixture(scope='module')
@@ -41,7 +41,7 @@ def by_grade_id(notebook):
 
 
 def assert_whole(restored, template):
-    """Every cell of the template once, in its order, with its own text if that counts."""
+    """Assert that each template cell is there once, in order, with its text if that is kept."""
     names = [grade_id(c) for c in template.notebook.cells if grade_id(c)]
     assert [grade_id(c) for c in restored.notebook.cells if grade_id(c)] == names
     cells = by_grade_id(restored.notebook)
@@ -67,7 +67,7 @@ def test_an_untouched_submission_needs_no_restoring(submitted, template):
     assert by_grade_id(restored.notebook)['explain'].source == 'Because.'
 
 
-def test_roles_come_from_the_marks_and_the_place(template):
+def test_roles_of_cells_come_from_their_metadata_and_position(template):
     assert {c.id: role(c) for c in template.notebook.cells} == {
         'title': 'text',
         'setup': 'setup',
@@ -81,7 +81,7 @@ def test_roles_come_from_the_marks_and_the_place(template):
     }
 
 
-def test_a_master_holds_the_tests_and_no_answer(template):
+def test_a_template_holds_the_hidden_tests_and_no_answer(template):
     text = nbformat.writes(template.notebook)
     assert 'hidden canary' in text
     assert 'the secret answer' not in text
@@ -152,7 +152,7 @@ HOW = {
 
 
 @pytest.mark.parametrize(('mutate', 'name', 'how'), CHANGED.values(), ids=CHANGED)
-def test_locked_and_grade_cells_are_the_originals_whatever_became_of_them(
+def test_changed_or_missing_locked_and_grade_cells_become_the_originals(
     submitted, template, mutate, name, how
 ):
     mutate(submitted.cells, lambda name: at(submitted, name))
@@ -174,7 +174,7 @@ UNHARMED = {
 
 
 @pytest.mark.parametrize('mutate', UNHARMED.values(), ids=UNHARMED)
-def test_other_changes_cost_no_word(submitted, template, mutate):
+def test_changes_that_affect_no_score_are_restored_without_a_note(submitted, template, mutate):
     mutate(submitted.cells, lambda name: at(submitted, name))
     restored = restore(submitted, template)
     assert_whole(restored, template)
@@ -217,7 +217,9 @@ ANSWERED = {
 
 
 @pytest.mark.parametrize(('mutate', 'source', 'note'), ANSWERED.values(), ids=ANSWERED)
-def test_an_answer_keeps_all_that_was_written(submitted, template, mutate, source, note):
+def test_a_restored_answer_keeps_all_that_the_student_wrote(
+    submitted, template, mutate, source, note
+):
     stub = by_grade_id(template.notebook)['double'].source
     mutate.released = stub
     mutate(submitted.cells, lambda name: at(submitted, name))
@@ -230,7 +232,7 @@ def test_an_answer_keeps_all_that_was_written(submitted, template, mutate, sourc
         assert [n for n in restored.notes if note in n], restored.notes
 
 
-def test_the_second_part_of_an_answer_stays_behind_it_without_marks(submitted, template):
+def test_the_unmarked_second_part_of_an_answer_follows_it_as_a_free_cell(submitted, template):
     place = at(submitted, 'double')
     submitted.cells.insert(place + 1, new_code_cell('helper = 1', id='double'))
     cells = restore(submitted, template).notebook.cells
@@ -243,7 +245,9 @@ OWN = {'setup': 'import math\nk = 2', 'shown': 'print(2)', 'try-it': 'double(5)'
 
 
 @pytest.mark.parametrize(('name', 'source'), OWN.items(), ids=OWN)
-def test_what_a_student_wrote_elsewhere_stays_as_a_free_cell(submitted, template, name, source):
+def test_code_that_a_student_wrote_outside_of_answers_stays_as_a_free_cell(
+    submitted, template, name, source
+):
     original = submitted.cells[at(submitted, name)].source
     submitted.cells[at(submitted, name)].source = source
     cells = restore(submitted, template).notebook.cells
@@ -255,7 +259,7 @@ def test_what_a_student_wrote_elsewhere_stays_as_a_free_cell(submitted, template
     assert texts.count(original) == (name == 'setup')
 
 
-def test_own_cells_stay_after_the_cell_they_followed(submitted, template):
+def test_cells_that_a_student_added_stay_after_the_cell_they_followed(submitted, template):
     submitted.cells.insert(0, new_code_cell('first'))
     submitted.cells.insert(at(submitted, 'double-check') + 1, new_markdown_cell('a thought'))
     submitted.cells.append(new_code_cell('last'))
@@ -271,7 +275,7 @@ STRANGE = new_code_cell('', metadata={'nbgrader': {'grade_id': 'other'}})
 
 
 @pytest.mark.parametrize('cells', [[], [new_code_cell('x = 1')], [STRANGE]])
-def test_a_notebook_of_another_assignment_says_so_first(template, cells):
+def test_the_first_note_reports_a_notebook_without_answer_cells(template, cells):
     restored = restore(new_notebook(cells=cells), template)
     assert_whole(restored, template)
     first = restored.notes[0]
@@ -293,7 +297,7 @@ FORGED = {
 }
 
 
-def test_nothing_that_a_student_wrote_into_metadata_lives_on(submitted, template):
+def test_metadata_and_outputs_that_a_student_forged_are_dropped(submitted, template):
     untouched = restore(submitted, template)
     submitted.cells.insert(3, new_code_cell('mine = 1'))
     expected = restore(submitted, template).notebook
@@ -314,13 +318,13 @@ def test_nothing_that_a_student_wrote_into_metadata_lives_on(submitted, template
     assert restored.notebook.metadata == untouched.notebook.metadata
 
 
-def test_healing_changes_neither_the_submission_nor_the_master(submitted, template):
+def test_restoring_changes_neither_the_submission_nor_the_template(submitted, template):
     before = (nbformat.writes(submitted), nbformat.writes(template.notebook))
     restore(submitted, template).notebook.cells[3].metadata.nbgrader.points = 7
     assert (nbformat.writes(submitted), nbformat.writes(template.notebook)) == before
 
 
-def test_healing_twice_changes_nothing_more(submitted, template):
+def test_restoring_a_restored_notebook_changes_nothing(submitted, template):
     reverse(submitted.cells, None)
     del submitted.cells[2]
     once = restore(submitted, template).notebook
@@ -345,7 +349,7 @@ MUTATIONS = st.lists(
 
 @settings(max_examples=150, deadline=None)
 @given(mutations=MUTATIONS)
-def test_heal_always_yields_every_cell_of_the_source_once_and_in_order(course, mutations):
+def test_restoring_always_yields_every_cell_of_the_source_once_and_in_order(course, mutations):
     template = make_template(course.source(TOY), course.release(TOY))
     notebook = answered(course, ANSWER)
     for what, which, other, text, name in mutations:

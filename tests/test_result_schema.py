@@ -21,7 +21,7 @@ from grader.sandbox.limits import (
 
 WHY = 'expected 2, saw 3: add it to itself'
 CHECK = 6
-"""Where the check stands that fails; behind it is one that passes."""
+"""Index of the check that fails; the next cell is one that passes."""
 
 
 @pytest.fixture
@@ -48,37 +48,37 @@ def verdict(answer, cell=CHECK):
     return answer['notebook'].cells[cell].metadata[KEY]
 
 
-def test_an_honest_result_is_taken_as_it_is(asked, answer):
+def test_an_honest_result_is_accepted_unchanged(asked, answer):
     notebook, seconds = read(answer, asked)
     assert (notebook, seconds) == (answer['notebook'], 1.5)
     assert isinstance(notebook.cells[0].metadata, nbformat.NotebookNode)
 
 
-def test_a_result_for_a_person_is_taken_too(asked, answer):
+def test_an_ungraded_result_is_accepted(asked, answer):
     answer['notebook'] = judged(answer['notebook'], {'double-check': '?'})
     assert verdict({'notebook': read(answer, asked)[0]})['outcome'] == 'ungraded'
 
 
 @pytest.mark.parametrize('seconds', ['1', -1, None, True, float('nan'), float('inf'), 1e300])
-def test_seconds_are_a_time(asked, answer, seconds):
+def test_a_result_with_invalid_seconds_is_refused(asked, answer, seconds):
     answer['seconds'] = seconds
     with pytest.raises(TaskFailed, match='the worker did not return a result'):
         read(answer, asked)
 
 
-def test_a_number_too_large_for_json_is_no_time(asked, answer):
+def test_seconds_too_large_for_a_float_are_refused(asked, answer):
     text = json.dumps(answer).replace('"seconds": 1.5', '"seconds": 1e999')
     with pytest.raises(TaskFailed, match='the worker did not return a result'):
         read(text, asked)
 
 
 @pytest.mark.parametrize('text', ['', '{', '[' * 100_000, 'NaN', '[]', '{}', '{"failed": "x"}'])
-def test_what_is_no_result_is_refused(asked, text):
+def test_text_that_is_not_a_result_is_refused(asked, text):
     with pytest.raises(TaskFailed, match='the worker did not return a result'):
         read(text, asked)
 
 
-def test_what_is_larger_than_any_result_is_not_even_read(asked):
+def test_text_larger_than_the_limit_is_refused(asked):
     with pytest.raises(TaskFailed, match='it has 100 MB; 100 MB are allowed'):
         read(' ' * (MAX_RESULT_BYTES + 1), asked)
 
@@ -108,7 +108,7 @@ SPOILED_VERDICTS = {
 
 
 @pytest.mark.parametrize('changes', SPOILED_VERDICTS.values(), ids=SPOILED_VERDICTS)
-def test_a_verdict_has_the_shape_of_one(asked, answer, changes):
+def test_a_malformed_or_contradictory_verdict_is_refused(asked, answer, changes):
     verdict(answer).update(changes)
     with pytest.raises(TaskFailed, match='verdicts that grading cannot give: `double-check`'):
         read(answer, asked)
@@ -120,7 +120,7 @@ def result_of(text):
 
 @pytest.mark.parametrize('points', ['-1', '0.5', '99', 'nan', 'inf', 'x'])
 @pytest.mark.parametrize('place', [CHECK, CHECK + 1])
-def test_no_output_is_read_as_points(asked, answer, place, points):
+def test_an_output_that_nbgrader_would_read_as_points_is_refused(asked, answer, place, points):
     """nbgrader takes the result of a grade cell for partial points."""
     answer['notebook'].cells[place].outputs.insert(0, result_of(points))
     with pytest.raises(TaskFailed, match='an output of a kind that no check makes'):
@@ -133,7 +133,7 @@ def leave_points(answer, *, earned=0.5, shown='0.5', times=1):
     cell.outputs = [result_of(shown) for _ in range(times)]
 
 
-def test_some_of_the_points_are_one_result(asked, answer):
+def test_a_partial_score_is_accepted_with_one_output_of_its_points(asked, answer):
     leave_points(answer)
     assert read(answer, asked)
 
@@ -151,13 +151,13 @@ def test_some_of_the_points_are_one_result(asked, answer):
         {'times': 2},
     ],
 )
-def test_no_other_points_than_the_verdicts_are(asked, answer, spoiled):
+def test_invalid_or_differing_partial_points_are_refused(asked, answer, spoiled):
     leave_points(answer, **spoiled)
     with pytest.raises(TaskFailed, match='verdicts that grading cannot give: `double-hidden`'):
         read(answer, asked)
 
 
-def test_what_fails_says_so_once(asked, answer):
+def test_a_failed_check_with_two_error_outputs_is_refused(asked, answer):
     cell = answer['notebook'].cells[CHECK]
     cell.outputs.append(cell.outputs[-1])
     with pytest.raises(
@@ -166,7 +166,7 @@ def test_what_fails_says_so_once(asked, answer):
         read(answer, asked)
 
 
-def test_what_was_printed_to_stderr_would_cost_the_points(asked, answer):
+def test_a_check_with_output_on_stderr_is_refused(asked, answer):
     answer['notebook'].cells[CHECK + 1].outputs[0].name = 'stderr'
     with pytest.raises(TaskFailed, match='an output of a kind that no check makes'):
         read(answer, asked)
@@ -237,7 +237,9 @@ SPOILED_NOTEBOOKS = [
 
 
 @pytest.mark.parametrize('spoil', [another_key_in_an_output, an_output_of_no_kind])
-def test_no_words_are_looked_for_where_a_notebook_is_broken(asked, answer, spoil, monkeypatch):
+def test_a_damaged_notebook_is_refused_without_collecting_its_schema_errors(
+    asked, answer, spoil, monkeypatch
+):
     """jsonschema would take 40 s and 1.4 GB for 30,000 outputs."""
     spoil(answer['notebook'])
     text = json.dumps(answer)
@@ -248,7 +250,7 @@ def test_no_words_are_looked_for_where_a_notebook_is_broken(asked, answer, spoil
 
 
 @pytest.mark.parametrize('part', ['{}', '[]', '{"a": 1}', '["{", {}]'])
-def test_what_takes_many_times_its_text_is_not_even_read(asked, monkeypatch, part):
+def test_text_with_too_many_objects_and_lists_is_refused_unparsed(asked, monkeypatch, part):
     monkeypatch.setattr(json, 'loads', lambda *_, **__: pytest.fail('it was read'))
     cells = ','.join([part] * (MAX_RESULT_PARTS + 1))
     with pytest.raises(TaskFailed, match='objects and lists; 200,000 are allowed'):
@@ -256,13 +258,13 @@ def test_what_takes_many_times_its_text_is_not_even_read(asked, monkeypatch, par
 
 
 @pytest.mark.parametrize('text', ['{[' * 150_000, '\\"{' * 150_000, '{\\' * 210_000])
-def test_what_a_student_printed_is_no_part_of_a_result(asked, answer, text):
+def test_brackets_in_printed_text_do_not_count_as_objects_or_lists(asked, answer, text):
     answer['notebook'].cells[1].outputs = [new_output('stream', name='stdout', text=text)]
     assert read(answer, asked)[0].cells[1].outputs[0].text == text
 
 
 @pytest.mark.parametrize('text', ['"' + '\\"{' * 300_000, '"' + '\\"' * 300_000 + '\\'])
-def test_a_text_that_never_ends_is_looked_at_once(asked, text):
+def test_a_string_that_never_ends_is_refused(asked, text):
     with pytest.raises(
         TaskFailed, match='the worker did not return a result of grading: Unterminated string'
     ):
@@ -270,7 +272,7 @@ def test_a_text_that_never_ends_is_looked_at_once(asked, text):
 
 
 @pytest.mark.parametrize('spoil', SPOILED_NOTEBOOKS)
-def test_nothing_but_verdicts_and_outputs_is_new_in_it(asked, answer, spoil):
+def test_a_result_that_changes_more_than_verdicts_and_outputs_is_refused(asked, answer, spoil):
     spoil(answer['notebook'])
     why = 'the worker returned (another|a damaged) notebook'
     with pytest.raises(TaskFailed, match=why):
@@ -289,20 +291,20 @@ def test_nothing_but_verdicts_and_outputs_is_new_in_it(asked, answer, spoil):
         (0, {'role': 'answer'}),
     ],
 )
-def test_what_healing_wrote_stays_as_it_was(asked, answer, place, changes):
+def test_a_result_that_changes_the_restored_metadata_is_refused(asked, answer, place, changes):
     notebook = answer['notebook']
     (notebook if place is None else notebook.cells[place]).metadata[KEY].update(changes)
     with pytest.raises(TaskFailed, match='verdicts that grading cannot give'):
         read(answer, asked)
 
 
-def test_no_verdict_at_all_is_none(asked, answer):
+def test_a_check_without_a_verdict_is_refused(asked, answer):
     del answer['notebook'].cells[CHECK].metadata[KEY]
     with pytest.raises(TaskFailed, match='verdicts that grading cannot give'):
         read(answer, asked)
 
 
-def test_a_worker_that_failed_says_why_in_bounds(asked):
+def test_a_failed_worker_may_report_a_reason_of_limited_length(asked):
     with pytest.raises(TaskFailed, match='no room') as failed:
         read({'failed': 'no room', 'traceback': 'in rooms.py'}, asked)
     assert failed.value.trace == 'in rooms.py'

@@ -28,7 +28,7 @@ def course(tmp_path, monkeypatch, looked):
     return looked_at_course(tmp_path, monkeypatch, looked)
 
 
-def test_what_has_not_changed_is_not_run_again_and_says_so(course, looked):
+def test_an_unchanged_submission_is_not_run_again_and_marked_as_reused(course, looked):
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submit(course, 'bob', answered(course, WRONG))
     submit(course, 'eve', b'')
@@ -46,7 +46,7 @@ def test_what_has_not_changed_is_not_run_again_and_says_so(course, looked):
     assert graded_path(course, 'ada').read_bytes() == kept
 
 
-def test_what_was_read_once_is_not_read_again(course, looked, monkeypatch):
+def test_an_unchanged_notebook_is_not_read_again(course, looked, monkeypatch):
     submit(course, 'ada', answered(course, RIGHT))
     submit(course, 'eve', b'')
     rows_of(course)
@@ -63,7 +63,7 @@ def test_what_was_read_once_is_not_read_again(course, looked, monkeypatch):
     assert len(looked) == 2
 
 
-def test_a_worker_begins_before_lessons_are_read_where_there_is_work_for_it(
+def test_a_worker_starts_before_lessons_are_prepared_only_if_there_is_work(
     course, looked, monkeypatch
 ):
     done = []
@@ -107,7 +107,7 @@ def test_a_damaged_result_is_made_again(course, looked, damage):
     assert path.read_text(encoding='utf-8') == whole
 
 
-def test_a_result_that_holds_takes_few_questions_to_the_database(course, looked):
+def test_each_reused_result_takes_at_most_three_database_queries(course, looked):
     questions = []
 
     @event.listens_for(Engine, 'before_cursor_execute')
@@ -128,14 +128,14 @@ def test_a_result_that_holds_takes_few_questions_to_the_database(course, looked)
     assert 0 < (asked[1] - asked[0]) / 2 <= 3
 
 
-def test_force_runs_it_again(course, looked):
+def test_the_option_force_runs_an_unchanged_submission_again(course, looked):
     submit(course, 'ada', answered(course, RIGHT))
     rows_of(course)
     assert not rows_of(course, force=True)['ada'].reused
     assert len(looked) == 2
 
 
-def test_outputs_of_the_lesson_change_nothing(course, looked):
+def test_changed_outputs_of_the_lesson_do_not_prevent_reuse(course, looked):
     submit(course, 'ada', answered(course, RIGHT))
     rows_of(course)
     lesson = toy_lesson()
@@ -144,16 +144,14 @@ def test_outputs_of_the_lesson_change_nothing(course, looked):
     assert rows_of(course)['ada'].reused
 
 
-def test_the_graders_own_failure_is_never_taken_for_a_result(course, looked):
+def test_a_submission_is_run_again_after_a_failure_of_the_grader(course, looked):
     submit(course, 'ada', answered(course, '# no room'))
     assert rows_of(course)['ada'].stored.pending
     assert not rows_of(course)['ada'].reused
     assert len(looked) == 2
 
 
-def test_what_the_gradebook_lost_or_holds_otherwise_is_stored_again_without_running(
-    course, looked
-):
+def test_scores_lost_or_changed_in_the_gradebook_are_stored_again_without_a_run(course, looked):
     submit(course, 'ada', answered(course, RIGHT))
     rows_of(course)
     with Gradebook(course.db_url) as book:
@@ -169,7 +167,7 @@ def test_what_the_gradebook_lost_or_holds_otherwise_is_stored_again_without_runn
     assert len(looked) == 1
 
 
-def test_a_persons_score_is_kept_and_not_asked_for_again(course):
+def test_a_manual_score_is_kept_and_not_asked_for_again(course):
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     rows_of(course)
     score_by_hand(course, 'ada', 1.5)
@@ -181,7 +179,7 @@ def test_a_persons_score_is_kept_and_not_asked_for_again(course):
     assert rows_of(course, force=True)['ada'].stored.score == 4.5
 
 
-def test_what_lateness_costs_follows_the_file_without_a_run(course, looked):
+def test_a_changed_deadlines_file_changes_late_penalties_without_a_run(course, looked):
     path = submit(course, 'ada', answered(course, RIGHT))
     path.with_name('timestamp.txt').write_text('2026-01-02 12:00:00 UTC')
     rows_of(course)

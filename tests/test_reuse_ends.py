@@ -1,4 +1,4 @@
-"""Whatever a result depends on: once that has changed, it is not used again."""
+"""A result is not used again once anything that it depends on has changed."""
 
 import nbformat
 import pytest
@@ -110,10 +110,12 @@ def a_damaged_notebook(course, monkeypatch):
         a_damaged_notebook,
     ],
 )
-def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, change):
+def test_a_change_of_anything_that_a_result_depends_on_causes_a_new_run(
+    course, looked, monkeypatch, change
+):
     monkeypatch.setattr(Here, 'require_isolation', lambda self, trust_students: True)
     submit(course, 'ada', answered(course, RIGHT))
-    # a student's own seed is another one for other cells, which would hide what else counts
+    # a student's own seed depends on the cells: its change would hide what else counts
     rows_of(course, seed='abc')
     assert rows_of(course, seed='abc')['ada'].reused
     change(course, monkeypatch)
@@ -121,7 +123,7 @@ def test_whatever_a_result_depends_on_makes_it_new(course, looked, monkeypatch, 
     assert len(looked) == 2
 
 
-def test_another_name_of_a_file_makes_it_new(course, looked):
+def test_a_renamed_file_beside_the_notebook_causes_a_new_run(course, looked):
     helper = submit(course, 'ada', answered(course, RIGHT)).with_name('helper.py')
     helper.write_text('x = 1')
     rows_of(course)
@@ -130,7 +132,7 @@ def test_another_name_of_a_file_makes_it_new(course, looked):
     assert len(looked) == 2
 
 
-def test_another_reason_why_a_notebook_cannot_be_read_is_told(course):
+def test_a_new_reason_why_a_notebook_cannot_be_read_is_reported(course):
     submit(course, 'eve', b'')
     before = rows_of(course)['eve']
     submit(course, 'eve', b'{}')
@@ -140,7 +142,7 @@ def test_another_reason_why_a_notebook_cannot_be_read_is_told(course):
     assert 'JSON but not a notebook' in row.reason
 
 
-def test_another_seed_makes_it_new(course, looked):
+def test_another_seed_causes_a_new_run(course, looked):
     submit(course, 'ada', answered(course, RIGHT))
     rows_of(course)
     assert not rows_of(course, seed='abc')['ada'].reused
@@ -149,7 +151,7 @@ def test_another_seed_makes_it_new(course, looked):
 
 
 @pytest.mark.slow
-def test_a_lesson_that_was_released_again_grades_its_submissions_again(course, looked, capsys):
+def test_submissions_are_graded_again_after_a_new_release_of_their_lesson(course, looked, capsys):
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submit(course, 'bob', answered(course, WRONG))
     assert main(['grade'], course=course) == 0

@@ -30,7 +30,7 @@ def shared(loop, tmp_path_factory):
 
 @pytest.fixture
 def rooms(loop):
-    """Rooms of one test's own."""
+    """Rooms for one test alone."""
     with opened_rooms(loop) as rooms:
         yield rooms
 
@@ -61,25 +61,25 @@ except ChildProcessError:
 """
 
 
-def test_the_names_of_a_notebook_are_the_students_alone(shared, student):
+def test_a_student_room_starts_with_the_names_of_ipython_alone(shared, student):
     seen = student(shared, 'print(sorted(n for n in globals() if not n.startswith("_")))')
     assert text_of(seen) == "['In', 'Out', 'exit', 'get_ipython', 'open', 'quit']\n"
 
 
 @pytest.mark.slow
-def test_all_time_that_a_students_room_takes_is_counted_however_it_is_taken(rooms, student):
+def test_cpu_time_of_child_processes_that_nobody_waits_for_is_counted(rooms, student):
     before_sec = rooms.student_cpu_sec()
     assert (before_sec is None) is (
         rooms._sandbox is None or rooms._sandbox.cgroup('student') is None
     )
     if before_sec is None:
         pytest.skip('this machine gives us no cgroups')
-    # nobody waits for these: their times are no parent's
+    # nobody waits for these children: their CPU times are added to no parent's
     student(rooms, BURN)
     assert rooms.student_cpu_sec() - before_sec >= 0.5
 
 
-def test_cells_and_questions_are_waited_for_by_what_the_students_room_has_used(monkeypatch):
+def test_timeouts_of_cells_and_questions_use_the_cpu_time_of_the_student_room(monkeypatch):
     waited = []
 
     async def run(source, *, timeout_sec, used_sec, expressions=None):
@@ -94,19 +94,19 @@ def test_cells_and_questions_are_waited_for_by_what_the_students_room_has_used(m
     assert waited == [5.0, 5.0]
 
 
-def test_a_cell_that_names_live_finds_the_kernel_set_up(rooms, student):
+def test_a_cell_that_imports_live_finds_the_kernel_set_up(rooms, student):
     code = 'from my_robot_basics.live import runner; print(runner._is_set_up)'
     assert said(student(rooms, code)) == 'True\n'
 
 
-def test_own_modules_can_be_imported_and_shadow_nothing(shared, student):
+def test_submitted_modules_can_be_imported_and_shadow_nothing(shared, student):
     code = 'import helper, numpy, json, rclpy, my_robot_basics.live; print(helper.WHERE)'
     result = student(shared, code)
     assert said(result) == 'my own helper\n'
 
 
-def test_own_modules_are_not_there_before_the_probe(loop, student, tmp_path):
-    """Some that libraries look for, and do without: they would end the kernel."""
+def test_submitted_modules_cannot_be_imported_before_the_rooms_are_ready(loop, student, tmp_path):
+    """Libraries try to import some optional modules: submitted ones would end the kernel."""
     for name in ('regex', 'atomicwrites', 'future_builtins', 'nothing_else'):
         (tmp_path / f'{name}.py').write_text('import os; os._exit(0)')
     rooms = GradingRooms(extra_files=sorted(tmp_path.glob('*.py')), isolated=False)
@@ -120,25 +120,25 @@ def test_the_student_room_holds_no_seed(shared, student, check):
     code = (
         "import os; print(sorted(k for k, v in os.environ.items() if 'beef' in v or 'SEED' in k))"
     )
-    # that of sets is the same in each room, and no secret
+    # the hash seed of Python is the same in each room, and no secret
     assert text_of(student(shared, code)) == "['PYTHONHASHSEED']\n"
     assert text_of(check(shared, code)) == "['MY_ROBOT_BASICS_SEED', 'PYTHONHASHSEED']\n"
 
 
-def test_values_and_functions_cross_by_name(shared, student, check):
+def test_a_check_reads_student_values_and_calls_student_functions_by_name(shared, student, check):
     student(shared, 'x = {"a": (1, 2.5)}\ndef f(a, b=2): return [a, b]')
     code = IMPORT + "print(student.value('x'), student.call('f', 7))"
     assert said(check(shared, code)) == "{'a': (1, 2.5)} [7, 2]\n"
 
 
-def test_text_crosses_as_it_is(shared, student, check):
+def test_any_text_passes_unchanged_between_the_rooms(shared, student, check):
     text = '\'"\\\n\x00θ🐢{}%s' + '\\' * 50
     student(shared, f'def same(x): return x + {text!r}')
     code = f"{IMPORT}print(student.call('same', {text!r}) == {text * 2!r})"
     assert said(check(shared, code)) == 'True\n'
 
 
-def test_what_a_called_function_prints_reaches_no_check(shared, student, check):
+def test_prints_of_a_called_student_function_do_not_reach_the_check(shared, student, check):
     student(shared, "def f():\n  import sys; print('x'); print('y', file=sys.stderr); return 1")
     result = check(shared, "from my_robot_basics.checks import student; print(student.call('f'))")
     assert [(o.name, o.text) for o in result.outputs] == [('stdout', '1\n')]
@@ -158,7 +158,7 @@ print(topic('/said').wait_for(timeout_sec=20.0).data)
 """
 
 
-def test_a_topic_crosses_but_not_into_the_rooms_next_door(rooms, shared, student, check):
+def test_a_students_topic_reaches_its_own_test_room_and_no_other(rooms, shared, student, check):
     student(rooms, PUBLISH)
     assert said(check(rooms, RECEIVE)) == 'hello\n'
     code = 'from my_robot_basics.checks import graph; print(graph().nodes())'
@@ -173,12 +173,12 @@ IN_SHARED_MEMORY = PUBLISH.replace(
 
 
 @pytest.mark.isolation
-def test_a_student_who_prefers_shared_memory_is_heard_too(rooms, student, check):
+def test_a_publisher_that_prefers_shared_memory_reaches_the_test_room(rooms, student, check):
     student(rooms, IN_SHARED_MEMORY)
     assert said(check(rooms, RECEIVE)) == 'hello\n'
 
 
-def test_the_probe_hears_only_what_is_announced(loop):
+def test_the_probe_receives_a_message_only_while_one_is_announced(loop):
     from my_robot_basics.exchange import probe
 
     with pytest.raises(TimeoutError, match='no message went from kernel to kernel in 0 s'):

@@ -13,7 +13,7 @@ from grader.kernels.rooms import GradingRooms
 
 @pytest.fixture
 def rooms(loop):
-    """Rooms of one test's own."""
+    """Rooms for one test alone."""
     with opened_rooms(loop) as rooms:
         yield rooms
 
@@ -64,7 +64,7 @@ PATCHES = {
 }
 
 
-def test_a_hostile_reply_is_a_failed_check_and_no_more(rooms, student, check):
+def test_a_hostile_reply_does_no_more_than_fail_its_check(rooms, student, check):
     student(rooms, SHOWN)
     cases = {name: (f'responder.answer = lambda r: {r}', e) for name, (r, e) in REPLIES.items()}
     cases |= {name: (code, 'no usable answer') for name, code in PATCHES.items()}
@@ -94,7 +94,7 @@ for name in list(sys.modules):
 FAIL = 'from my_robot_basics.checks import fail\nfail(expected=1, seen=2, hint="x")'
 
 
-def test_what_a_student_patches_changes_no_check(rooms, student, check):
+def test_patches_in_the_student_room_change_no_check(rooms, student, check):
     student(rooms, ATTACKS, timeout_sec=5.0)
     student(rooms, 'import builtins; builtins.isinstance = lambda *a: True', timeout_sec=2.0)
     student(rooms, 'import builtins; builtins.__import__ = None', timeout_sec=2.0)
@@ -152,7 +152,7 @@ print(student.call('peek'))
 def test_the_hidden_test_is_nowhere_in_the_students_process(rooms, student, check):
     assert student(rooms, SEARCH).ran_to_end
     assert said(check(rooms, PEEK)) == '[]\n'
-    assert said(check(rooms, PEEK)) == '[]\n'  # nor is the first one left there
+    assert said(check(rooms, PEEK)) == '[]\n'  # the first call has left none either
     # the search does find what is there
     planted = (
         'kept = "canary-of-the-hidden-test"\nopen("left.txt", "w").write(kept)\nprint(peek())'
@@ -186,7 +186,7 @@ LITERALS = {
 
 
 @pytest.mark.parametrize(('text', 'is_string'), LITERALS.items(), ids=range(len(LITERALS)))
-def test_only_the_literal_of_one_string_is_read(text, is_string):
+def test_a_reply_is_read_only_if_it_is_a_single_string_literal(text, is_string):
     answering = type('Student', (), {})()
 
     async def run(code, **more):

@@ -1,4 +1,4 @@
-"""Rooms are opened both or not at all, and leave nothing."""
+"""Both rooms are opened or neither, and they leave no process, file or domain behind."""
 
 import asyncio
 import shutil
@@ -20,7 +20,7 @@ from grader.kernels.rooms import GradingRooms
 
 @pytest.fixture
 def left(monkeypatch):
-    """What rooms that a test opened have left: children, files, domains."""
+    """Count the children, files and domains that rooms opened by a test have left."""
     folder = Path(tempfile.mkdtemp(prefix='left-', dir='/tmp'))
     monkeypatch.setattr(tempfile, 'tempdir', str(folder))
     before = {p.pid for p in psutil.Process().children(recursive=True)}
@@ -39,7 +39,7 @@ NOTHING = (0, 0, 0)
 
 
 def left_at_last(left):
-    """What is left when what was killed has had the time to end."""
+    """Return what is left once killed processes have had time to end."""
     deadline = time.monotonic() + 30
     while left() != NOTHING and time.monotonic() < deadline:
         time.sleep(0.02)
@@ -54,7 +54,7 @@ FAILURES = {
 
 
 @pytest.mark.parametrize(('what', 'error', 'why'), FAILURES.values(), ids=FAILURES)
-def test_rooms_that_do_not_open_are_the_graders_failure(
+def test_rooms_that_cannot_be_opened_count_as_a_failure_of_the_grader(
     loop, monkeypatch, tmp_path, left, what, error, why
 ):
     def fail(*arguments, **options):
@@ -82,7 +82,7 @@ NOT_READY = {
 
 @pytest.mark.timeout(60)
 @pytest.mark.parametrize(('code', 'why'), NOT_READY.values(), ids=NOT_READY)
-def test_a_room_that_is_not_made_ready_closes_both(loop, monkeypatch, left, code, why):
+def test_both_rooms_close_if_one_cannot_be_made_ready(loop, monkeypatch, left, code, why):
     monkeypatch.setattr(module, 'STUDENT_COMES', code)
     timeout_sec = 0.5 if code == PROBE else 3600  # what can't come any more is not waited for
     receives = module.TEST_RECEIVES.replace('receive()', f'receive({timeout_sec})')
@@ -107,7 +107,7 @@ def test_cancelling_while_rooms_open_closes_them(loop, left):
 
 
 @pytest.mark.parametrize('closed', [pytest.param(True, marks=pytest.mark.isolation), False])
-def test_rooms_leave_nothing(loop, left, closed):
+def test_closed_rooms_leave_no_process_file_or_domain(loop, left, closed):
     rooms = GradingRooms(isolated=closed)
 
     async def once():

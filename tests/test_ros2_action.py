@@ -51,7 +51,7 @@ SHOWN = [
 
 
 @pytest.mark.parametrize(('words', 'expected'), SHOWN, ids=[words for words, _ in SHOWN])
-def test_prints_what_ros2cli_prints(words, expected):
+def test_action_verbs_print_the_output_of_ros2cli(words, expected):
     result = ros2('action', *words.split())
     assert (result.out, result.err, result.status) == (expected, '', 0)
 
@@ -68,7 +68,7 @@ GOALS = [
 
 
 @pytest.mark.parametrize(('words', 'stdin', 'expected'), GOALS, ids=[str(g[0]) for g in GOALS])
-def test_a_goal_shows_how_it_ended(words, stdin, expected):
+def test_send_goal_prints_how_its_goal_ended(words, stdin, expected):
     result = ros2('action', 'send_goal', ACTION, *words, stdin=stdin)
     assert without_id(result.out) == expected
     assert (result.err, result.status) == ('', 0)
@@ -98,7 +98,7 @@ def sending(*words):
 
 
 def read_until(process, is_enough):
-    """What a process prints, line by line, until it is enough; goals without their ids."""
+    """Return the lines that a process prints until they are enough, with ids of goals replaced."""
     text = ''
     while not is_enough(text):
         line = process.stdout.readline()
@@ -109,7 +109,7 @@ def read_until(process, is_enough):
 
 @contextlib.contextmanager
 def accepted_goal(speed):
-    """A command whose goal was accepted, which has printed so far and no further."""
+    """A command whose goal was accepted; its output was read up to that line."""
     with sending(ACTION, KIND, goal(speed)) as process:
         read_until(process, lambda text: text.endswith(ACCEPTED))
         yield process
@@ -124,7 +124,7 @@ def test_ctrl_c_cancels_the_goal_and_waits_for_its_end(number):
     assert process.returncode == 0
 
 
-def test_it_says_that_a_goal_cannot_be_cancelled():
+def test_a_refused_cancellation_of_a_goal_is_reported():
     with accepted_goal(2.0) as process:
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=TIMEOUT_SEC)
@@ -132,39 +132,39 @@ def test_it_says_that_a_goal_cannot_be_cancelled():
     assert process.returncode == 1
 
 
-def test_a_server_that_does_not_come_is_waited_for_as_long_as_was_said():
+def test_send_goal_waits_for_an_action_server_up_to_its_timeout():
     result = ros2('action', 'send_goal', '/nothing', KIND, '--timeout', '1')
     assert result.out == WAITING
     assert result.err == 'Action server is not available after waiting 1 seconds.\n'
     assert result.status == 1
 
 
-def test_a_goal_that_ends_in_time_ends_as_ever():
+def test_a_goal_that_ends_within_the_timeout_is_not_cancelled():
     result = ros2('action', 'send_goal', ACTION, KIND, goal(0.5), '--timeout', '600')
     assert without_id(result.out) == sent(0.5) + ACCEPTED + ended('SUCCEEDED')
 
 
 @pytest.mark.slow  # it waits for 15 s, within which a slow machine accepts a goal
-def test_a_goal_that_takes_longer_is_cancelled_and_that_is_said():
+def test_a_goal_that_exceeds_the_timeout_is_cancelled_with_a_message():
     result = ros2('action', 'send_goal', ACTION, KIND, goal(1.0), '--timeout', '15')
     assert without_id(result.out) == f'{sent(1.0)}{ACCEPTED}Canceling goal...\nGoal canceled.\n'
     assert result.err == 'The goal has not ended after waiting 15 seconds.\n'
     assert result.status == 1
 
 
-def test_a_time_below_zero_is_refused():
+def test_a_negative_timeout_is_refused():
     result = ros2('action', 'send_goal', ACTION, KIND, '--timeout', '-1')
     assert result.status == 2
 
 
-def test_sigterm_ends_it_at_once():
+def test_sigterm_ends_send_goal_at_once():
     with accepted_goal(2.0) as process:
         process.send_signal(signal.SIGTERM)
         out, err = process.communicate(timeout=TIMEOUT_SEC)
     assert (out, err, process.returncode) == ('', '', signal.SIGTERM)
 
 
-def test_a_client_is_counted_and_named():
+def test_action_info_counts_and_names_an_action_client():
     with accepted_goal(1.0) as process:
         result = ros2('action', 'info', '-t', ACTION)
         process.send_signal(signal.SIGINT)
@@ -176,7 +176,7 @@ def test_a_client_is_counted_and_named():
     )
 
 
-def test_a_goal_waits_for_its_server_and_ends_with_a_signal():
+def test_sigint_ends_the_wait_for_an_action_server():
     with sending('/nothing', KIND) as process:
         assert process.stdout.readline() == WAITING
         process.send_signal(signal.SIGINT)
@@ -203,13 +203,13 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(('words', 'complaint'), REFUSED, ids=[words for words, _ in REFUSED])
-def test_refuses_as_ros2cli_does(words, complaint):
+def test_invalid_action_arguments_are_refused_as_by_ros2cli(words, complaint):
     result = ros2('action', *words.split())
     assert (result.out, result.err, result.status) == ('', complaint, 1)
 
 
 @pytest.mark.parametrize('words', ['send_goal /x', 'send_goal /x y {} --stdin', 'type', 'info'])
-def test_a_wrong_usage_is_shown_the_right_one(words):
+def test_wrong_usage_of_an_action_verb_prints_its_correct_usage(words):
     result = ros2('action', *words.split())
     assert result.err.startswith(f'usage: ros2 action {words.split()[0]} [-h]')
     assert (result.out, result.status) == ('', 2)

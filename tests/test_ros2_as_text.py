@@ -83,7 +83,7 @@ POSE = PoseWithCovariance()
          "covariance: '<array type: double[36]>'\n"),
     ],
 )  # fmt: skip
-def test_yaml(message, shortening, expected):
+def test_a_message_is_printed_as_yaml(message, shortening, expected):
     assert as_yaml(message, Shortening(**shortening)) == expected
 
 
@@ -110,5 +110,5 @@ def test_yaml_in_flow_style_has_arrays_on_one_line():
         (Empty(), {}, ''),
     ],
 )  # fmt: skip
-def test_csv(message, shortening, expected):
+def test_a_message_is_printed_as_csv(message, shortening, expected):
     assert as_csv(message, Shortening(**shortening)) == expected

@@ -23,17 +23,17 @@ def read(text):
         r'-r __ns:=/a\ b',
     ],
 )
-def test_it_has_the_words_that_a_shell_would_find(rest):
+def test_a_command_line_is_split_into_words_as_by_a_shell(rest):
     text = f'  {START} --ros-args {rest}\n'
     assert list(read(text).words) == shlex.split(text)
 
 
-def test_a_line_may_go_on_after_a_backslash():
+def test_a_command_may_continue_on_the_next_line_after_a_backslash():
     text = f'{START} --ros-args \\\n    -r __ns:=/left'
     assert read(text).rules() == [('__ns', '/left')]
 
 
-def test_rules_have_two_sides():
+def test_remap_rules_are_split_at_their_first_separator():
     line = read(f'{START} --ros-args -r __ns:=/left --remap a:=b:=c -p r:=1 -r nothing')
     assert line.rules() == [('__ns', '/left'), ('a', 'b:=c'), ('nothing', '')]
 
@@ -64,6 +64,6 @@ BAD = [
 
 
 @pytest.mark.parametrize(('text', 'words'), BAD, ids=[text[-30:] or 'empty' for text, _ in BAD])
-def test_anything_else_is_refused_with_what_to_do(text, words):
+def test_a_command_line_that_is_not_allowed_is_refused_with_a_correction(text, words):
     with pytest.raises(BadCommandLine, match=words.replace('|', r'\|').replace('$', r'\$')):
         read(text)

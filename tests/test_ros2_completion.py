@@ -54,7 +54,7 @@ COMPLETIONS = [
 
 @pytest.mark.usefixtures('system')
 @pytest.mark.parametrize(('line', 'expected'), COMPLETIONS, ids=[line for line, _ in COMPLETIONS])
-def test_completes(line, expected, tmp_path):
+def test_words_of_ros2_command_lines_are_completed(line, expected, tmp_path):
     answer = tmp_path / 'answer'
     asked = {'_ARGCOMPLETE': '1', 'COMP_LINE': line, 'COMP_POINT': str(len(line)), 'IFS': '\v'}
     ros2(**asked, _ARGCOMPLETE_STDOUT_FILENAME=str(answer))
@@ -62,7 +62,7 @@ def test_completes(line, expected, tmp_path):
 
 
 @pytest.mark.usefixtures('system')
-def test_the_doctor_completes_topics_too(tmp_path):
+def test_topic_doctor_completes_topic_names(tmp_path):
     line, answer = 'topic_doctor /kin', tmp_path / 'answer'
     asked = {'_ARGCOMPLETE': '1', 'COMP_LINE': line, 'COMP_POINT': str(len(line)), 'IFS': '\v'}
     subprocess.run(

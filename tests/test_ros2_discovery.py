@@ -1,4 +1,4 @@
-"""When discovery may end: when all participants and all their announced endpoints are known."""
+"""Discovery ends when all participants and all their announced endpoints are known."""
 
 import contextlib
 import re
@@ -44,7 +44,7 @@ def test_participants_are_counted_by_their_ports(
     assert participants.count(domain_id) == 0
 
 
-def test_a_running_node_is_counted():
+def test_a_running_node_counts_as_one_participant():
     with own_domain():
         domain_id = environment.domain_id()
         assert participants.count(domain_id) == 0
@@ -77,7 +77,7 @@ def observer():
         context.try_shutdown()
 
 
-def test_whoever_is_asked_announces_itself_to_that_port_and_logs_nothing():
+def test_an_asked_participant_announces_itself_to_the_reply_port_and_logs_nothing():
     with own_domain(), plain_nodes(2, 1) as process:
         theirs = participants.ports(environment.domain_id())
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
@@ -91,11 +91,11 @@ def test_whoever_is_asked_announces_itself_to_that_port_and_logs_nothing():
         process.terminate()
         assert process.communicate() == ('', '')
     assert announced.startswith(b'RTPS')
-    assert b'enclave=/' in announced  # a ROS participant says so
+    assert b'enclave=/' in announced  # every ROS participant announces its enclave
     assert re.fullmatch(r'/_ros2cli_\d+\n/plain_0\n/plain_1\n', names)
 
 
-def test_what_participants_say_they_have_is_what_is_on_the_graph():
+def test_participants_announce_the_nodes_and_endpoints_that_the_graph_shows():
     with own_domain(), plain_nodes(3, 2), observer() as node:
         ends: set[bytes] = set()
         with entities.Reader(node) as reader:
@@ -117,7 +117,7 @@ def test_what_participants_say_they_have_is_what_is_on_the_graph():
     nodes = sorted(sorted(each.nodes) for each in said)
     assert nodes == [[('observer', '/')], [('plain_0', '/'), ('plain_2', '/')], [('plain_1', '/')]]
     unsaid = ends - {end for each in said for end in each.endpoints}
-    assert len(unsaid) == 6  # with which the three say and hear all this
+    assert len(unsaid) == 6  # on these the three announce their entities and receive announcements
 
 
 def expected_ends(reader):
@@ -131,7 +131,7 @@ SAID = (
 )
 
 
-def test_a_saying_is_parsed():
+def test_an_announcement_of_entities_is_parsed():
     assert entities.parse(b''.join(SAID)) == (
         GID,
         entities.Entities(frozenset({('talker', '/')}), frozenset({READER, WRITER})),
@@ -139,13 +139,13 @@ def test_a_saying_is_parsed():
 
 
 @given(message=st.binary(max_size=80) | st.integers(0, 80).map(lambda n: b''.join(SAID)[:n]))
-def test_what_is_no_saying_is_refused_at_once(message):
+def test_an_arbitrary_announcement_is_parsed_or_refused_with_a_value_error(message):
     with contextlib.suppress(ValueError):
         entities.parse(message)
 
 
 @pytest.mark.parametrize('length', [0, 3, 19, 23, 40, len(b''.join(SAID)) - 1])
-def test_a_saying_that_was_cut_is_refused(length):
+def test_a_truncated_announcement_is_refused(length):
     with pytest.raises(ValueError, match='the message ends at'):
         entities.parse(b''.join(SAID)[:length])
 
@@ -166,7 +166,7 @@ class Clock:
 class FakeObserver:
     """Replaces an rclpy node that discovers another participant's endpoint at given times.
 
-    And for the reader of what participants say.
+    It replaces the reader of announced entities as well.
     """
 
     def __init__(self, clock, *, said_at=0.0, endpoint_at=0.0, name_at=0.0):
@@ -202,7 +202,7 @@ class FakeObserver:
 
 
 def settled_after(monkeypatch, seen, *, present=2, here_only=True):
-    """When it ends, and when it has asked for announcements, in seconds."""
+    """Return when discovery has ended and when it has asked for announcements, in seconds."""
     clock, asked = seen.clock, []
     monkeypatch.setattr(discovery, 'time', clock)
     monkeypatch.setattr(participants, 'count', lambda domain_id: present)
@@ -219,32 +219,34 @@ def settled_after(monkeypatch, seen, *, present=2, here_only=True):
         ({}, 2, True, 0.05),
         ({'said_at': 0.2, 'endpoint_at': 0.21, 'name_at': 0.23}, 2, True, 0.28),
         ({'name_at': 0.5}, 2, True, 0.55),
-        ({'endpoint_at': 1.5}, 2, True, 1.55),  # it is known to come
+        ({'endpoint_at': 1.5}, 2, True, 1.55),  # it is announced, so waited for
         ({'said_at': 0.9, 'endpoint_at': 0.9, 'name_at': 0.9}, 2, True, 0.95),
-        ({}, 3, True, 2.0),  # one that never says anything
-        ({}, 0, True, 0.05),  # the operating system tells nothing
+        ({}, 3, True, 2.0),  # one never announces anything
+        ({}, 0, True, 0.05),  # the operating system shows no sockets
         ({}, 2, False, 0.5),  # other machines may answer
         ({'said_at': 0.7}, 2, False, 0.75),
     ],
 )
-def test_it_ends_when_everybody_is_there(seen, present, here_only, expected_sec, monkeypatch):
+def test_discovery_ends_once_all_participants_are_known_or_a_limit_is_reached(
+    seen, present, here_only, expected_sec, monkeypatch
+):
     took_sec, _ = settled_after(
         monkeypatch, FakeObserver(Clock(), **seen), present=present, here_only=here_only
     )
     assert took_sec == pytest.approx(expected_sec, abs=discovery.POLL_SEC * 1.5)
 
 
-def test_who_is_missing_is_asked_less_and_less_often(monkeypatch):
+def test_missing_participants_are_asked_less_and_less_often(monkeypatch):
     _, asked = settled_after(monkeypatch, FakeObserver(Clock(), said_at=0.4))
     assert asked == pytest.approx([0.0, 0.05, 0.15, 0.35], abs=discovery.POLL_SEC * 3.5)
 
 
-def test_where_nobody_is_missing_nobody_is_asked(monkeypatch):
+def test_no_participant_is_asked_if_none_is_missing(monkeypatch):
     _, asked = settled_after(monkeypatch, FakeObserver(Clock(), endpoint_at=0.4))
     assert asked == []
 
 
-def test_a_graph_that_never_rests_ends_too(monkeypatch):
+def test_discovery_ends_on_a_graph_that_never_settles(monkeypatch):
     seen = FakeObserver(Clock())
     seen.get_node_names_and_namespaces = lambda: [('talker', '/'), (f'n{seen.clock.now}', '/')]
     took_sec, _ = settled_after(monkeypatch, seen)

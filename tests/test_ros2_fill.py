@@ -1,4 +1,4 @@
-"""What a user types for a message: what is accepted, and how a mistake is named."""
+"""Values that a user types for a message: which are accepted, and how a mistake is reported."""
 
 import contextlib
 import math
@@ -41,7 +41,7 @@ from std_msgs.msg import Bool, Byte, Char, Empty, Float32, Float64, Int8, Int32,
         ),
     ],
 )
-def test_values_that_fit(message, values, expected):
+def test_fitting_values_fill_a_message(message, values, expected):
     if 'header' in values:
         expected.header.stamp.sec = 3
     assert fill_to_publish(message, values) == []
@@ -88,7 +88,7 @@ def test_values_that_fit(message, values, expected):
         (String(), {'data': '\ud800'}, "data: is not text in UTF-8: '\\ud800'"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_named_with_its_path_and_what_is_wanted(message, values, complaint):
+def test_a_wrong_value_is_reported_with_its_path_and_the_expected_type(message, values, complaint):
     with pytest.raises(BadValue) as raised:
         fill(message, values)
     assert str(raised.value) == complaint
@@ -105,7 +105,7 @@ def test_stamps_are_set_at_publication():
 
 
 @pytest.mark.parametrize('value', ['now', 'auto'])
-def test_a_request_has_no_time_of_publication(value):
+def test_a_request_accepts_neither_now_nor_auto_for_a_stamp(value):
     field = {'now': {'stamp': 'now'}, 'auto': 'auto'}[value]
     with pytest.raises(BadValue, match=rf"as a dictionary, got '{value}'"):
         fill(PointStamped(), {'header': field})
@@ -128,7 +128,7 @@ def guesses(draw):
 
 
 def sent(message):
-    """As it arrives."""
+    """Return a message as it arrives."""
     return deserialize_message(serialize_message(message), type(message))
 
 
@@ -137,7 +137,7 @@ def text(message):
 
 
 @given(guesses())
-def test_whatever_is_typed_fits_or_is_refused(guess):
+def test_any_typed_values_either_fit_a_message_or_are_refused(guess):
     message_class, values = guess
     message = message_class()
     with contextlib.suppress(BadValue):
@@ -151,7 +151,7 @@ ECHOED = [found for found in MESSAGES if found not in (Byte, DiagnosticStatus)]
 
 
 @pytest.mark.parametrize('message_class', ECHOED, ids=lambda c: f'{c.__module__}.{c.__name__}')
-def test_what_is_echoed_can_be_published_again(message_class):
+def test_an_echoed_message_can_be_published_again(message_class):
     message = message_class()
     fill(message, yaml.safe_load(text(message_class())))
     assert text(sent(message)) == text(message_class())

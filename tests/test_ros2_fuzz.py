@@ -1,4 +1,4 @@
-"""Any words end in an exit status, and never in a traceback."""
+"""Any command line ends with an exit status, and never with a traceback."""
 
 import argparse
 import importlib
@@ -91,7 +91,7 @@ def in_this_process(monkeypatch):
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(words=command_lines())
-def test_no_words_end_in_a_traceback(words, in_this_process, capfd):
+def test_no_command_line_ends_in_a_traceback(words, in_this_process, capfd):
     before, sys.stdin = sys.stdin, io.TextIOWrapper(io.BytesIO(b'data: x'))
     try:
         status = main.main(words)

@@ -202,13 +202,13 @@ SHOWN = [
 
 
 @pytest.mark.parametrize(('words', 'expected'), SHOWN, ids=[words for words, _ in SHOWN])
-def test_prints_what_ros2cli_prints(words, expected):
+def test_graph_verbs_print_the_output_of_ros2cli(words, expected):
     result = ros2(*words.split())
     expected = expected.removeprefix('\n') if expected.count('\n') > 1 else expected
     assert (result.out, result.err, result.status) == (expected, '', 0)
 
 
-def test_the_verbose_info_is_in_the_form_of_ros2cli():
+def test_verbose_topic_info_has_the_format_of_ros2cli():
     result = ros2('topic', 'info', '/arm_description', '--verbose')
     assert re.fullmatch(VERBOSE_INFO.removeprefix('\n'), result.out), result.out
 
@@ -233,13 +233,13 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(('words', 'complaint', 'status'), REFUSED, ids=[r[0] for r in REFUSED])
-def test_refuses_as_ros2cli_does(words, complaint, status):
+def test_unknown_names_are_refused_as_by_ros2cli(words, complaint, status):
     result = ros2(*words.split())
     assert (result.err, result.status) == (complaint, status)
 
 
 @pytest.mark.slow
-def test_a_parameter_of_another_type_is_refused_by_the_node():
+def test_a_parameter_value_of_another_type_is_refused_by_the_node():
     result = ros2('param', 'set', '/arm/everything', 'an_integer', 'text')
     assert result.err.startswith('Setting parameter failed: ')
     assert result.status == 0  # as ros2cli

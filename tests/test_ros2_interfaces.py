@@ -37,7 +37,7 @@ SHOWN = {
 
 
 @pytest.mark.parametrize('name', SHOWN)
-def test_interfaces_are_shown_with_what_they_hold(name):
+def test_interfaces_are_shown_with_their_fields(name):
     result = ros2('interface', 'show', name)
     assert (result.out, result.err, result.status) == (SHOWN[name], '', 0)
     assert ros2('interface', 'show', '-', stdin=f'{name}\n').out == SHOWN[name]
@@ -118,13 +118,13 @@ PROTOTYPES = {
 
 
 @pytest.mark.parametrize('name', PROTOTYPES)
-def test_a_prototype_is_what_a_client_sends(name):
+def test_a_prototype_shows_the_fields_that_a_client_sends(name):
     assert ros2('interface', 'proto', name, '--no-quotes').out == f'{PROTOTYPES[name]}\n'
     assert ros2('interface', 'proto', name).out == f'"{PROTOTYPES[name]}"\n'
 
 
 @pytest.mark.parametrize('name', ['std_msgs', 'std_msgs/msg/Strin', 'os/srv/path', 'a/action/B'])
-def test_what_has_no_prototype_is_refused(name):
+def test_a_prototype_of_an_invalid_type_is_refused(name):
     result = ros2('interface', 'proto', name)
     assert result.out == ''
     assert result.err.startswith('The passed ')

@@ -1,4 +1,4 @@
-"""The command as a whole: what it hands over, offers and refuses."""
+"""The `ros2` command as a whole: what it leaves to ros2cli, offers and refuses."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ def main(*, script_name='ros2', argv=None, description=None, extension=None):
 VERBS = [(c, verb) for c, command in COMMANDS.items() for verb in command.verbs or ('',)]
 
 
-def test_a_real_ros2cli_gets_everything_untouched(tmp_path):
+def test_a_real_ros2cli_receives_all_arguments_unchanged(tmp_path):
     package = tmp_path / 'ros2cli'
     package.mkdir()
     (package / '__init__.py').touch()
@@ -44,7 +44,9 @@ def test_a_real_ros2cli_gets_everything_untouched(tmp_path):
         (('topic', '--include-hidden-topics', 'delay', '/x'), '`ros2 topic delay` '),
     ],
 )
-def test_what_only_ros2cli_has_is_named(words, name, capsys, monkeypatch):
+def test_a_ros2cli_command_that_the_course_lacks_is_named_with_its_package(
+    words, name, capsys, monkeypatch
+):
     monkeypatch.setattr(stopping, 'watch', lambda: None)
     assert main.main(list(words)) == 2
     printed = capsys.readouterr()
@@ -54,14 +56,14 @@ def test_what_only_ros2cli_has_is_named(words, name, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize('words', [['nothing'], ['topic', 'nothing'], ['topic', 'list', '-y']])
-def test_what_nobody_has_is_a_usage_error(words):
+def test_an_unknown_command_verb_or_option_is_a_usage_error(words):
     result = ros2(*words)
     assert (result.out, result.status) == ('', 2)
     assert 'Traceback' not in result.err
     assert result.err.splitlines()[-1].startswith('ros2')
 
 
-def test_without_a_verb_the_verbs_are_listed():
+def test_a_command_without_a_verb_lists_the_verbs():
     result = ros2('topic')
     assert '  hz    Print the average publishing rate to screen\n' in result.out
     assert result.status == 0
@@ -79,13 +81,13 @@ def test_every_verb_has_help(words, capsys):
     assert capsys.readouterr().out.startswith(f'usage: ros2 {" ".join(words)} [-h]')
 
 
-def test_the_table_and_the_files_are_the_same():
+def test_the_table_of_verbs_matches_the_files_of_verbs():
     folder = Path(main.__file__).parent / 'verbs'
     files = {path.stem for path in folder.glob('*.py')} - {'__init__'}
     assert files == {f'{command}_{verb}'.rstrip('_') for command, verb in VERBS}
 
 
-def test_the_choices_of_policies_are_those_of_rclpy():
+def test_qos_profiles_and_policies_have_the_choices_of_rclpy():
     import rclpy.qos
 
     assert list(arguments.PROFILES) == rclpy.qos.QoSPresetProfiles.short_keys()
@@ -95,7 +97,7 @@ def test_the_choices_of_policies_are_those_of_rclpy():
 
 
 @pytest.mark.parametrize('text', ['x', '233', '-1', '²', '1.5'])
-def test_an_impossible_domain_is_named(text):
+def test_an_invalid_domain_id_is_reported(text):
     result = ros2('topic', 'list', ROS_DOMAIN_ID=text)
     assert result.err == (
         f'ROS_DOMAIN_ID is {text!r}, expected a number from 0 to 232: correct it, or unset it\n'
@@ -103,7 +105,7 @@ def test_an_impossible_domain_is_named(text):
     assert result.status == 1
 
 
-def test_what_the_environment_says_stands(monkeypatch):
+def test_settings_in_the_environment_are_kept(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '5')
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
     monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', '/mine.xml')
@@ -116,7 +118,7 @@ def test_what_the_environment_says_stands(monkeypatch):
     assert os.environ['AMENT_PREFIX_PATH'] == f'/workspace/install:{sys.prefix}'
 
 
-def test_a_bare_shell_gets_what_a_lesson_has(monkeypatch):
+def test_a_shell_without_settings_gets_those_of_a_lesson(monkeypatch):
     monkeypatch.setattr(lessons, 'running', list)
     for name in ('ROS_DOMAIN_ID', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'AMENT_PREFIX_PATH'):
         monkeypatch.setenv(name, '')
@@ -128,25 +130,25 @@ def test_a_bare_shell_gets_what_a_lesson_has(monkeypatch):
     assert os.environ['AMENT_PREFIX_PATH'] == sys.prefix
 
 
-def test_a_closed_stdout_is_no_mishap():
+def test_a_closed_stdout_is_not_an_error():
     shell = pexpect.run(f'bash -c \'"{SCRIPT}" interface list >&-; echo $?\'', encoding='utf-8')
     assert shell == '0\r\n'
 
 
-def test_rclpy_is_loaded_only_for_what_needs_it():
+def test_interface_show_does_not_import_rclpy():
     light = ['interface', 'show', 'std_msgs/msg/String']
     code = f'import sys; sys.argv[1:] = {light}; from my_robot_basics.ros2 import main;'
     code += "main.main(); sys.exit('rclpy' in sys.modules)"
     assert pexpect.run(f'{sys.executable} -c "{code}"', withexitstatus=True)[1] == 0
 
 
-def test_what_writes_message_modules_is_not_loaded():
+def test_topic_list_does_not_import_the_generator_of_message_modules():
     code = "import sys; sys.argv[1:] = ['topic', 'list']; from my_robot_basics.ros2 import main;"
     code += "main.main(); sys.exit('rclpy' not in sys.modules or 'lark' in sys.modules)"
     assert pexpect.run(f'{sys.executable} -c "{code}"', withexitstatus=True)[1] == 0
 
 
-def test_a_slow_end_of_python_does_not_change_the_status():
+def test_a_slow_exit_of_python_does_not_change_the_exit_status():
     # the alarm would kill it there, where Python has taken our handler away
     code = """
 import atexit, os, signal, sys

@@ -48,7 +48,7 @@ class Lesson:
         self.manager, self.client = start_new_kernel(kernel_name='python3', env=env)
 
     def run(self, source, *, interrupt_at=None):
-        """The cell's text; the kernel is interrupted when this appears in it."""
+        """Return the text of a cell; interrupt the kernel when `interrupt_at` appears in it."""
         text, interrupted = '', False
 
         def take(message):
@@ -86,7 +86,7 @@ def test_a_cell_calls_a_service_of_its_kernel(lesson):
     assert 'Traceback' not in text
 
 
-def test_a_cell_of_hz_ends_by_itself(lesson):
+def test_topic_hz_in_a_cell_ends_at_sigint_without_a_traceback(lesson):
     text = lesson.run(f'!timeout -s INT 9 ros2 topic hz {TOPIC}')
     assert re.match(r'average rate: (0\.[89]|1\.[01])\d\d\n\tmin: \d', text), text
     assert 'Traceback' not in text

@@ -140,7 +140,7 @@ SHOWN = [
 
 
 @pytest.mark.parametrize(('words', 'expected'), SHOWN, ids=[words for words, _ in SHOWN])
-def test_prints_what_ros2cli_prints(words, expected):
+def test_param_verbs_print_the_output_of_ros2cli(words, expected):
     result = ros2('param', *words.split())
     assert (result.out, result.err, result.status) == (expected, '', 0)
 
@@ -165,7 +165,7 @@ REFUSED_BY_THE_NODE = [
 @pytest.mark.parametrize(
     ('words', 'complaint'), REFUSED_BY_THE_NODE, ids=[r[0] for r in REFUSED_BY_THE_NODE]
 )
-def test_what_the_node_refuses_is_told_with_its_reason(words, complaint):
+def test_a_refusal_by_the_node_is_printed_with_its_reason(words, complaint):
     result = ros2('param', *words.split())
     assert (result.out, result.err, result.status) == ('', complaint, 0)  # as ros2cli
 
@@ -187,7 +187,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(('words', 'complaint'), REFUSED, ids=[r[0] for r in REFUSED])
-def test_refuses_as_ros2cli_does(words, complaint):
+def test_unknown_nodes_files_and_parameters_are_refused_as_by_ros2cli(words, complaint):
     result = ros2('param', *words.split())
     assert (result.out, result.err, result.status) == ('', complaint, 1)
 
@@ -202,7 +202,7 @@ def test_refuses_as_ros2cli_does(words, complaint):
         ('dump', 'node_name'),
     ],
 )
-def test_missing_words_are_named(words, missing):
+def test_missing_arguments_are_named(words, missing):
     result = ros2('param', *words.split())
     verb = words.split()[0]
     complaint = f'ros2 param {verb}: error: the following arguments are required: {missing}\n'
@@ -210,7 +210,7 @@ def test_missing_words_are_named(words, missing):
     assert (result.out, result.status) == ('', 2)
 
 
-def test_what_is_loaded_is_what_is_dumped(load):
+def test_loaded_parameters_are_dumped_with_the_same_values(load):
     result = load(OTHERS, '--timeout', '3')
     said = [line.removesuffix(' successful') for line in result.out.splitlines()]
     loaded = [name for name in NAMES if name not in ('start_type_description_service',)]
@@ -221,7 +221,7 @@ def test_what_is_loaded_is_what_is_dumped(load):
 
 
 @pytest.mark.slow
-def test_a_wildcard_is_loaded_unless_it_is_not_wanted(load):
+def test_a_wildcard_is_loaded_unless_an_option_forbids_it(load):
     refused = load(WILDCARD, '--no-use-wildcard')
     assert refused.err == 'Param file does not contain selected parameters\n'
     assert (refused.out, refused.status) == ('', 1)
@@ -231,12 +231,12 @@ def test_a_wildcard_is_loaded_unless_it_is_not_wanted(load):
 
 
 @pytest.mark.slow
-def test_what_is_for_the_node_overrides_a_wildcard(load):
+def test_parameters_for_the_node_override_a_wildcard(load):
     load(f'{WILDCARD}\n{OVERLAY}')
     assert (values()['int_param'], values()['str_param']) == (12345, 'Override')
 
 
-def test_each_refusal_of_a_loaded_file_is_told(load):
+def test_each_refused_parameter_of_a_loaded_file_is_reported(load):
     text = '/foo/test_node:\n  ros__parameters:\n    int_param: 1.5\n    bool_param: false\n'
     result = load(text)
     reason = "Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'"
@@ -246,7 +246,7 @@ def test_each_refusal_of_a_loaded_file_is_told(load):
 
 @pytest.mark.parametrize('text', ['', '- 1', '5', '/foo/test_node: [', '\x00', '/**: {1: 2}',
                                   '/foo/test_node: {ros__parameters: [1]}'])  # fmt: skip
-def test_what_is_no_parameter_file_is_told_in_a_sentence(load, text):
+def test_an_invalid_parameter_file_is_reported_without_a_traceback(load, text):
     result = load(text)
     assert 'is not a valid ROS parameter file' in result.err.replace('YAML file', '')
     assert 'Traceback' not in result.err

@@ -1,4 +1,4 @@
-"""`ros2 pkg create`: a package of Python's, as colcon builds it; nothing half made."""
+"""`ros2 pkg create`: a Python package that colcon builds, made as a whole or not at all."""
 
 import argparse
 
@@ -25,7 +25,7 @@ def create(tmp_path, monkeypatch, capsys):
     return call
 
 
-def test_a_package_with_a_node_and_dependencies(create, tmp_path):
+def test_a_package_is_created_with_a_node_and_dependencies(create, tmp_path):
     status, said = create(
         *('--build-type', 'ament_python', 'arm_player', '--node-name', 'arm_driver'),
         *('--dependencies', 'rclpy', 'arm_interfaces', '--description', 'Draws & <more>'),
@@ -40,7 +40,7 @@ def test_a_package_with_a_node_and_dependencies(create, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ['arm_player']
 
 
-def test_a_folder_that_is_there_stays_as_it_is(create, tmp_path):
+def test_an_existing_folder_is_left_unchanged(create, tmp_path):
     (tmp_path / 'arm_player').mkdir()
     status, _ = create('--build-type', 'ament_python', 'arm_player')
     assert "The directory 'arm_player' already exists" in status
@@ -55,7 +55,7 @@ def test_a_folder_that_is_there_stays_as_it_is(create, tmp_path):
         (('--build-type', 'ament_python', 'a', '--node-name', 'a/b'), "'a/b' is no name"),
     ],
 )
-def test_what_cannot_be_made_is_told(create, tmp_path, words, said):
+def test_a_package_that_cannot_be_created_is_refused_with_a_reason(create, tmp_path, words, said):
     status, _ = create(*words)
     assert said in status
     assert list(tmp_path.iterdir()) == []

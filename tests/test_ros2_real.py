@@ -109,7 +109,7 @@ def system():
 
 
 @pytest.mark.parametrize('words', COMMANDS, ids=' '.join)
-def test_prints_the_same(words):
+def test_a_command_prints_the_same_as_a_real_ros2cli(words):
     assert answer(OURS, words) == answer(REAL, words)
 
 

@@ -1,4 +1,4 @@
-"""`ros2 run` and `ros2 pkg`: what is found, what it is given, and how it ends."""
+"""`ros2 run` and `ros2 pkg`: finding executables, passing arguments and signals, statuses."""
 
 import os
 import signal
@@ -87,12 +87,12 @@ FAILURES = [
 
 
 @pytest.mark.parametrize(('words', 'out', 'err', 'status'), FAILURES)
-def test_a_failure_is_told_as_ros2cli_tells_it(words, out, err, status):
+def test_a_failure_of_ros2_run_is_printed_as_by_ros2cli(words, out, err, status):
     result = ros2('run', *words.split())
     assert (result.out, result.err, result.status) == (out, err, status)
 
 
-def test_an_executable_that_is_there_twice_is_not_guessed(prefix):
+def test_an_ambiguous_executable_is_refused_with_all_its_paths(prefix):
     result = ros2('run', 'demo', 'says')
     paths = [prefix / 'lib/demo' / name for name in ('deeper/says', 'says')]
     assert result.err == f'Multiple executables found:\n- {paths[0]}\n- {paths[1]}\n'
@@ -100,13 +100,13 @@ def test_an_executable_that_is_there_twice_is_not_guessed(prefix):
 
 
 @pytest.mark.parametrize('words', [('demo', 'broken'), ('--prefix', '/no/such', 'demo', 'once')])
-def test_what_does_not_start_is_said_in_a_sentence(words):
+def test_a_program_that_cannot_start_is_reported_in_one_sentence(words):
     result = ros2('run', *words)
     assert result.err.endswith('does not start: No such file or directory\n')
     assert result.status == 1
 
 
-def test_the_prefix_may_be_misquoted():
+def test_a_prefix_with_an_unclosed_quote_is_refused():
     result = ros2('run', '--prefix', "'", 'demo', 'once')
     assert (result.err, result.status) == ('--prefix: No closing quotation: "\'"\n', 1)
 
@@ -143,7 +143,7 @@ def test_the_executable_does_not_outlive_a_killed_command():
         assert process.stdout.read() == 'SIGTERM\n'  # up to the end of the executable
 
 
-def test_timeout_ends_a_node():
+def test_the_linux_command_timeout_ends_an_executable():
     done = subprocess.run(
         ['timeout', '-s', 'INT', '2', SCRIPT, 'run', 'demo', 'counts'],
         capture_output=True,
@@ -171,7 +171,7 @@ def shell():
 STOPPED_BY_CTRL_C = r'SIGINT[\s\d]*\[ros2run\]: Process exited with failure 5'
 
 
-def test_at_a_terminal_the_keyboard_is_the_executables(shell):
+def test_keyboard_input_at_a_terminal_goes_to_the_executable(shell):
     shell.sendline(f'"{SCRIPT}" run demo asks')
     time.sleep(1.0)
     shell.sendline('world')
@@ -184,7 +184,7 @@ def test_at_a_terminal_the_keyboard_is_the_executables(shell):
     shell.expect_exact('$ ')
 
 
-def test_at_a_terminal_it_stops_and_goes_on(shell):
+def test_an_executable_at_a_terminal_stops_at_ctrl_z_and_goes_on_at_fg(shell):
     shell.sendline(f'"{SCRIPT}" run demo counts')
     shell.expect('ready')
     shell.sendcontrol('z')
@@ -220,7 +220,7 @@ def test_packages_and_their_executables_are_listed(prefix):
     assert set(listed) <= set(ros2('pkg', 'executables').out.splitlines())
 
 
-def test_prefixes_come_from_the_first_place_that_has_the_package(prefix, tmp_path):
+def test_a_prefix_is_the_first_one_on_the_path_that_has_the_package(prefix, tmp_path):
     make_package(tmp_path, 'demo', {})
     first = f'{tmp_path}:{prefix}'
     assert ros2('pkg', 'prefix', 'demo', AMENT_PREFIX_PATH=first).out == f'{tmp_path}\n'

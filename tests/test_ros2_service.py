@@ -71,7 +71,7 @@ SHOWN = [
 
 
 @pytest.mark.parametrize(('words', 'expected'), SHOWN, ids=[words for words, _ in SHOWN])
-def test_prints_what_ros2cli_prints(words, expected):
+def test_service_verbs_print_the_output_of_ros2cli(words, expected):
     result = ros2('service', *words.split())
     assert (result.out, result.err, result.status) == (expected, '', 0)
 
@@ -134,7 +134,7 @@ def test_a_repeated_call_goes_on_until_a_signal():
     assert (err, process.returncode) == ('', signal.SIGINT)
 
 
-def test_a_call_waits_for_its_service_and_ends_with_a_signal():
+def test_sigterm_ends_the_wait_for_a_service():
     with started(SCRIPT, 'service', 'call', '/nothing', 'std_srvs/srv/Empty') as process:
         assert process.stdout.readline() == WAITING
         process.send_signal(signal.SIGTERM)
@@ -174,13 +174,13 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(('words', 'complaint', 'status'), REFUSED, ids=[r[0] for r in REFUSED])
-def test_refuses_as_ros2cli_does(words, complaint, status):
+def test_invalid_service_arguments_are_refused_as_by_ros2cli(words, complaint, status):
     result = ros2('service', *words.split())
     assert (result.out, result.err, result.status) == ('', complaint, status)
 
 
 @pytest.mark.parametrize('words', ['call /x', 'call /x std_srvs/SetBool -r x', 'find', 'info'])
-def test_a_wrong_usage_is_shown_the_right_one(words):
+def test_wrong_usage_of_a_service_verb_prints_its_correct_usage(words):
     result = ros2('service', *words.split())
     assert result.err.startswith(f'usage: ros2 service {words.split()[0]} [-h]')
     assert (result.out, result.status) == ('', 2)

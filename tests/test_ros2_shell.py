@@ -1,4 +1,4 @@
-"""`./course ros-shell`: what it sets, which lesson it joins, and what it says."""
+"""`./course ros-shell`: its settings, the lesson that it joins, and its messages."""
 
 import os
 import subprocess
@@ -42,28 +42,28 @@ def run(*arguments, **environment):
         ('232', 232),
     ],
 )
-def test_joins_the_lesson_that_started_last_or_the_one_that_is_named(wanted, domain_id):
+def test_ros_shell_joins_the_named_lesson_or_the_one_that_started_last(wanted, domain_id):
     assert shell._choose(RUNNING, wanted) == domain_id
 
 
-def test_without_a_lesson_the_domain_is_that_of_ros():
+def test_ros_shell_joins_domain_0_if_no_lesson_runs():
     assert shell._choose([], None) == 0
 
 
 @pytest.mark.parametrize('wanted', ['233', '-1', '06_qos', '٣', 'publisher'])
-def test_an_unknown_lesson_is_refused_with_those_that_run(wanted):
+def test_an_unknown_lesson_is_refused_with_the_running_lessons(wanted):
     with pytest.raises(CommandError, match=r'\(02_joint_state, 05_command_line, 03_publisher\)'):
         shell._choose(RUNNING, wanted)
 
 
-def test_the_refusal_is_a_line(monkeypatch):
+def test_an_unknown_lesson_is_refused_in_one_line(monkeypatch):
     refused = run('--lesson', 'nowhere', '-c', 'echo ran')
     assert (refused.returncode, refused.stdout) == (2, '')
     assert refused.stderr.startswith("course: --lesson is 'nowhere', expected one of the lessons")
     assert len(refused.stderr.splitlines()) == 1
 
 
-def test_it_lists_the_lessons_and_marks_the_one_that_is_joined(monkeypatch):
+def test_ros_shell_lists_running_lessons_and_marks_the_joined_one(monkeypatch):
     for name in shell.SHOWN:
         monkeypatch.setenv(name, 'something')
     report = shell._report(RUNNING, 4).splitlines()
@@ -73,7 +73,7 @@ def test_it_lists_the_lessons_and_marks_the_one_that_is_joined(monkeypatch):
     assert shell._report([], 0).splitlines()[0] == 'no lesson is running'
 
 
-def test_it_says_what_it_sets_and_sets_it():
+def test_ros_shell_reports_the_environment_variables_that_it_sets():
     done = run('--lesson', '55', '-c', 'env')
     assert done.returncode == 0
     seen = dict(line.split('=', 1) for line in done.stdout.splitlines() if '=' in line)
@@ -82,19 +82,19 @@ def test_it_says_what_it_sets_and_sets_it():
     assert said.items() <= seen.items()
     assert said['ROS_DOMAIN_ID'] == '55'
     assert said['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
-    # what this Python's wheels need is nobody else's
+    # settings that only the wheels of this Python need do not reach other programs
     assert sys.prefix not in seen.get('LD_LIBRARY_PATH', '')
     assert '_ROS_WHEELS_BOOTSTRAP_COMPLETE' not in seen
 
 
-def test_a_command_gets_its_words_and_gives_its_status():
+def test_a_command_gets_its_arguments_and_its_exit_status_is_returned():
     done = run(
         '--', sys.executable, '-c', 'import sys; print(sys.argv[1:]); sys.exit(3)', '-v', 'a b'
     )
     assert (done.returncode, done.stdout) == (3, "['-v', 'a b']\n")
 
 
-def test_a_command_that_is_not_there_is_named():
+def test_a_missing_command_is_named():
     done = run('--', 'no-such-command')
     assert done.returncode == 127
     assert done.stderr.splitlines()[-1] == (
@@ -104,7 +104,7 @@ def test_a_command_that_is_not_there_is_named():
 
 @pytest.fixture
 def home(tmp_path):
-    """A home whose ~/.bashrc sets up another ROS, as that of many a student does."""
+    """A home folder whose ~/.bashrc sets up another ROS, as those of many students do."""
     (tmp_path / '.bashrc').write_text(
         'export ROS_DOMAIN_ID=42 ROS_DISTRO=humble PYTHONPATH=/opt/ros/humble/python\n'
         'export PATH=/opt/ros/humble/bin:$PATH AMENT_PREFIX_PATH=/opt/ros/humble\n'
@@ -114,7 +114,7 @@ def home(tmp_path):
     return tmp_path
 
 
-def test_an_open_shell_is_the_users_own_with_the_settings_of_the_course(home):
+def test_an_interactive_shell_has_the_users_aliases_and_the_courses_settings(home):
     environment = {**os.environ, 'HOME': str(home), 'VIRTUAL_ENV': sys.prefix}
     command = ['-P', '-m', 'my_robot_basics.ros2.shell', '--lesson', '55']
     with pexpect.spawn(

@@ -1,4 +1,4 @@
-"""The verbs that go on: echo, hz, bw and pub, and how they end."""
+"""The verbs that run until they are stopped: echo, hz, bw and pub."""
 
 import os
 import re
@@ -59,7 +59,7 @@ PRINTED = [
     ((TOPIC, '--field', 'header', '--flow-style', '--no-str'),
      r"stamp:\n  sec: \d+\n  nanosec: \d+\nframe_id: '<string length: <9>>'\n---\n"),
     ((TOPIC, '--field', 'name', '--filter', 'len(m) == 2'), r"\['joint1', 'joint2'\]\n---\n"),
-    (('/arm_description',), r'data: two links\n---\n'),  # latched: it is asked for as such
+    (('/arm_description',), r'data: two links\n---\n'),  # latched, as the subscription
     (('/arm_description', '-l', '3'), r'data: two...\n---\n'),
     (('/arm_description', '--qos-reliability', 'reliable', '--qos-durability',
       'transient_local', '--qos-depth', '1'), r'data: two links\n---\n'),
@@ -67,7 +67,7 @@ PRINTED = [
 
 
 @pytest.mark.parametrize(('words', 'expected'), PRINTED, ids=[' '.join(p[0]) for p in PRINTED])
-def test_echo_prints_what_ros2cli_prints(words, expected):
+def test_echo_prints_the_output_of_ros2cli(words, expected):
     result = ros2('topic', 'echo', '--once', *words)
     assert re.fullmatch(expected, result.out), result.out
     assert (result.err, result.status) == ('', 0)
@@ -104,7 +104,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(('words', 'out', 'err'), REFUSED, ids=[words for words, *_ in REFUSED])
-def test_what_cannot_be_done_is_said_in_a_sentence(words, out, err):
+def test_invalid_topic_arguments_are_refused_in_a_sentence(words, out, err):
     result = ros2('topic', *words.split())
     assert (result.out, result.status) == (out, 1)
     assert result.err.startswith(err)
@@ -112,7 +112,7 @@ def test_what_cannot_be_done_is_said_in_a_sentence(words, out, err):
 
 
 @pytest.mark.slow
-def test_echo_hears_reliable_and_best_effort_publishers_at_once():
+def test_echo_falls_back_to_best_effort_for_mixed_publishers():
     with on_the_graph('best_effort', topics=()):
         said = ''
         while 'Some' not in said:  # until it is up
@@ -214,7 +214,7 @@ endless = pytest.mark.parametrize('words', ENDLESS.values(), ids=ENDLESS)
 
 
 def wait_for_handlers(process):
-    """Until then, Python is still starting, and the command does not run yet."""
+    """Wait until the command handles signals: before, Python is still starting."""
     term = 1 << (signal.SIGTERM - 1)
     while True:
         with open(f'/proc/{process.pid}/status', encoding='ascii') as status:
@@ -224,7 +224,7 @@ def wait_for_handlers(process):
 
 
 @endless
-def test_a_signal_ends_it_quietly_with_the_status_of_ros2cli(words):
+def test_a_signal_ends_an_endless_verb_silently_with_the_status_of_ros2cli(words):
     number = (signal.SIGINT, signal.SIGTERM)[len(words) % 2]
     with started(SCRIPT, 'topic', *words) as process:
         wait_for_handlers(process)
@@ -237,7 +237,7 @@ def test_a_signal_ends_it_quietly_with_the_status_of_ros2cli(words):
 
 @pytest.fixture
 def bystander():
-    """A node that is there all the time; it still sees for seconds a node that was killed."""
+    """A node that stays on the graph; it would still see a killed node for seconds."""
     context = Context()
     context.init(domain_id=int(os.environ['ROS_DOMAIN_ID']))
     node = Node('bystander', context=context)
@@ -248,7 +248,7 @@ def bystander():
 
 @pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_at_any_moment_leaves_no_ghost(number, bystander):
+def test_echo_ended_by_a_signal_at_any_moment_leaves_no_node_on_the_graph(number, bystander):
     for moment_sec in (0.0, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8):
         with started(SCRIPT, 'topic', 'echo', '/heard') as process:
             wait_for_handlers(process)
@@ -256,20 +256,20 @@ def test_a_signal_at_any_moment_leaves_no_ghost(number, bystander):
             process.send_signal(number)
             out, err = process.communicate(timeout=TIMEOUT_SEC)
         assert (process.returncode, out, err) == (number, '', '')
-        time.sleep(0.2)  # its farewell is under way
+        time.sleep(0.2)  # the news that it has left is under way
         names = bystander.get_node_names()
         assert not [name for name in names if name.startswith('_ros2cli_')]
 
 
 @endless
-def test_it_ends_when_nobody_reads_any_more(words):
+def test_an_endless_verb_ends_when_its_output_is_closed(words):
     with started(SCRIPT, 'topic', *words) as process:
         process.stdout.close()
         assert process.stderr.read() == ''
         assert process.wait(TIMEOUT_SEC) == 141
 
 
-def test_head_gets_its_lines():
+def test_head_receives_its_lines_of_echo():
     # with its type it waits for a publisher: without, a busy machine may show none in time
     done = subprocess.run(
         f'"{SCRIPT}" topic echo {TOPIC} sensor_msgs/msg/JointState | head -3',

@@ -51,7 +51,7 @@ def course(tmp_path):
 @pytest.mark.slow  # test_nbgrader_commands.py does so with a small lesson
 @pytest.mark.timeout(3600)  # one answer after the other
 @pytest.mark.parametrize('names', [BY_COMMAND, tuple(PATHS)], ids=['some', 'all'])
-def test_nbgrader_autograde_gives_the_same_scores(course, names):
+def test_nbgrader_autograde_gives_the_sample_class_its_expected_scores(course, names):
     hand_in(course, names)
     for assignment in by_assignment(names):
         run = python(course, '-m', 'nbgrader', 'autograde', assignment)
@@ -61,7 +61,7 @@ def test_nbgrader_autograde_gives_the_same_scores(course, names):
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)  # one answer after the other
-def test_the_formgraders_call_gives_the_same_scores(course):
+def test_the_formgrader_gives_the_sample_class_its_expected_scores(course):
     hand_in(course, PATHS)
     for assignment, students in by_assignment(PATHS).items():
         run = python(course, '-c', FORMGRADER, assignment, *students)
@@ -90,7 +90,7 @@ def python(course, *arguments):
 
 
 def wrong(course, names):
-    """The scores that are not as expected, with their reasons: the course is gone afterwards."""
+    """Return scores that are not as expected, with reasons: the course is deleted afterwards."""
     found = {(r.student_id, r.assignment, r.grade_id): r.score for r in records(course)}
     differ = []
     for name in names:

@@ -1,4 +1,4 @@
-"""The sample class: of each notebook comes what should, in the grader and in Validate."""
+"""The sample class: each notebook gets its expected verdicts in the grader and in Validate."""
 
 import re
 import tempfile
@@ -29,12 +29,12 @@ CHANGED = (
     '03_publisher-fail-edited_grade_cells',
     '03_publisher-fail-skip_execution_tags',
 )
-"""Notebooks whose grade cells it finds changed: that is all that it says then."""
+"""Notebooks whose grade cells stock Validate finds changed: it reports nothing else then."""
 ABSENT = {
     '03_publisher-pass-deleted_grade_cells',
     '03_publisher-zero-another_assignment',
 }
-"""Notebooks without the assignment's grade cells: it can say nothing of them."""
+"""Notebooks without the assignment's grade cells: stock Validate cannot judge them."""
 TRUSTS = {
     '03_publisher-fail-makes_the_courses_node_later',
     '03_publisher-fail-patches_everything',
@@ -58,7 +58,7 @@ WAITS_ALREADY = {
     '09_actions-fail-waits_in_the_callback',
 }
 """Notebooks whose client waits in a callback: in the lesson's one kernel, where cells ran before
-the checks, it may wait still, and is told so in other words."""
+the checks, it may still be waiting, and the reason differs."""
 
 
 def of_assignment(assignment):
@@ -66,12 +66,12 @@ def of_assignment(assignment):
 
 
 def tells(name, new):
-    """How much a sample tells that fails so many new checks; an untouched one fails all."""
+    """Return a sort key: samples that fail many new checks last, untouched ones before them."""
     return (new > 0, not name.endswith('-untouched'), new)
 
 
 def most_telling():
-    """For each check a sample that fails it: as few as will do."""
+    """Return few samples of which at least one fails each check."""
     telling = set()
     for assignment in {assignment_of(path) for path in PATHS.values()}:
         names = of_assignment(assignment)
@@ -94,12 +94,12 @@ BROKEN = {
 }
 """Samples with a cell that can't run, and how their rows begin."""
 WITH_DEMOS = {'02_joint_state-pass-numpy', '03_publisher-pass-sleep_loop'}
-"""Those that it runs whole: for the others, what the lesson shows would be run once more each."""
+"""Samples that Validate runs as a whole; the others are run without the demonstrations."""
 RIGHT = {'03_publisher-pass-deleted_grade_cells'}
 AT_ONCE = {'03_publisher-fail-callback_raises'}
 """Samples that go through Validate in an ordinary run; `./course test --slow` takes all."""
 ORDINARY = {*AT_ONCE, *BROKEN, *RIGHT, *most_telling()}
-"""Those that it grades."""
+"""Samples that an ordinary run grades."""
 
 
 def sooner(names, these):
@@ -165,11 +165,11 @@ def validated(tmp_path_factory):
         yield lambda name: validate_class(assignment_of(PATHS[name]), name in AT_ONCE)[name]
 
 
-def test_something_is_expected_of_every_sample():
+def test_every_sample_has_expected_scores():
     assert set(EXPECTED) == set(PATHS)
 
 
-def test_a_sample_with_a_package_earns_what_that_package_does():
+def test_a_sample_with_a_package_earns_the_points_of_that_package():
     packages = {change.name: change.points for change in ALL}
     names = [name for name in of_assignment(LESSON) if package_of(name)]
     assert len(names) >= 5
@@ -180,7 +180,7 @@ def test_a_sample_with_a_package_earns_what_that_package_does():
 
 
 @pytest.mark.parametrize('name', PATHS)
-def test_a_sample_stands_on_the_present_release(name):
+def test_a_sample_is_based_on_the_present_release(name):
     assert PATHS[name].read_text(encoding='utf-8') == rebased(PATHS[name])
 
 
@@ -195,7 +195,7 @@ def test_an_ordinary_run_grades_right_samples_and_some_that_fail_each_check():
 
 @pytest.mark.starts
 @pytest.mark.parametrize('name', sooner(EXPECTED, ORDINARY))
-def test_a_sample_earns_what_it_should_for_the_reason_that_it_should(graded, name):
+def test_a_sample_earns_its_expected_points_for_the_expected_reasons(graded, name):
     cells = EXPECTED[name]
     course, row = graded(name)
     found = verdicts(course, name, assignment_of(PATHS[name]))
@@ -224,7 +224,7 @@ def test_the_row_of_a_broken_cell_names_the_cause_first(graded):
 @pytest.mark.parametrize(
     'name', sooner([name for name in PATHS if name not in (*NO_VERDICT, *CHANGED)], AT_ONCE)
 )
-def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
+def test_validate_says_the_same_as_the_grader_of_each_visible_cell(graded, validated, name):
     course, _ = graded(name)
     notebook = nbformat.read(PATHS[name], as_version=4)
     ours = {
@@ -242,7 +242,7 @@ def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
         assert not any(ours.values())
         assert all(OUT_OF_ORDER[name] in ' '.join(said.split()) for said in theirs.values())
     else:
-        # a visible part comes first in its cell: what fails there fails here, and in those words
+        # the visible part comes first in its cell: a failure there has the same reason here
         if numberless(ours) != numberless(theirs):
             ours = visible_parts_alone(notebook, name)
         if name in BESIDE_THE_ARM:
@@ -255,13 +255,13 @@ def test_validate_says_the_same_of_each_visible_cell(graded, validated, name):
 
 @pytest.mark.slow  # that says how far stock Validate goes
 @pytest.mark.parametrize(('name', 'why'), NO_VERDICT.items(), ids=NO_VERDICT)
-def test_validate_really_breaks_on_it(validated, name, why):
+def test_stock_validate_gives_no_verdict_on_a_sample_that_breaks_it(validated, name, why):
     assert why in validated(name)['broken']
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('name', CHANGED)
-def test_validate_really_finds_it_changed(validated, name):
+def test_stock_validate_reports_changed_grade_cells(validated, name):
     changed = [cell['source'] for cell in validated(name)['changed']]
     notebook = nbformat.read(PATHS[name], as_version=4)
     assert {c.id for c in notebook.cells if c.source.strip() in changed} == set(EXPECTED[name])
@@ -270,7 +270,7 @@ def test_validate_really_finds_it_changed(validated, name):
 def by_cell(notebook, found, name):
     """What Validate says of each grade cell: its error, or '' if it passed."""
     assert found.keys() <= {'failed'}, (name, found)
-    # shown in lines of their own, the same words
+    # Validate shows the same words in lines of their own
     errors = {c['source']: c['raw_error'].replace('\n', ' ') for c in found.get('failed', [])}
     return {
         cell.metadata.nbgrader.grade_id: errors.get(cell.source.strip(), '')
@@ -296,8 +296,8 @@ def failing(reasons):
 def numberless(reasons):
     """Reasons by cell, in one line and without numbers: poses are random, rates are measured.
 
-    How long a check waited is no part of them, and whether it did neither: it does not where no
-    thread or process could still make an endpoint, and the whole lesson in one kernel has some.
+    The time that a check waited is left out, and so is whether it waited: it does not where no
+    thread or process could still make an endpoint, and a whole lesson in one kernel has some.
     """
     waited = re.compile(r' in \d+(\.\d+)? s\b')
     number = re.compile(r'-?\d+(\.\d+)?(e-?\d+)?')

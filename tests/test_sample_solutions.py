@@ -58,7 +58,7 @@ def test_each_lesson_has_a_solution_that_runs_as_python(tmp_path):
                 compile(cell.source, path.name, 'exec')
 
 
-def test_nothing_is_written_while_somebody_may_still_hand_in(course, capsys):
+def test_solutions_are_not_written_while_a_student_may_still_submit(course, capsys):
     set_due(course, TOY, in_days(-2))
     set_due(course, TOY, in_days(1), student_id='ada')
     assert main(['solutions'], course=course) == 1
@@ -70,7 +70,7 @@ def test_nothing_is_written_while_somebody_may_still_hand_in(course, capsys):
 
 
 @pytest.mark.starts  # to release takes long
-def test_a_mark_scheme_is_for_teachers_alone(course):
+def test_a_mark_scheme_is_kept_out_of_the_release(course):
     release(course)
     cells = {cell.id: cell.source for cell in course.release(TOY).cells}
     assert cells['explain-text'] == '## Explain'

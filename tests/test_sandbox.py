@@ -31,7 +31,9 @@ def inside(request, loop):
         assert kernel.why_not_forked == ''
         ran = await kernel.run(code, timeout_sec=120.0)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(KernelPaths, 'remove', lambda paths: None)  # others will live there
+            patch.setattr(
+                KernelPaths, 'remove', lambda paths: None
+            )  # later kernels need the folder
             await kernel.stop()
         return ''.join(o.get('text', '') or o.evalue for o in ran.outputs).strip()
 
@@ -56,7 +58,9 @@ PYTHONS = [str(f) for p in (sys.prefix, sys.base_prefix) for f in Path(p).iterdi
 
 
 @pytest.mark.parametrize('room', ['student', 'test'])
-def test_the_course_and_the_machines_own_are_not_there(shared_sandbox, tmp_path, room, inside):
+def test_private_files_of_the_course_and_the_machine_are_not_in_a_room(
+    shared_sandbox, tmp_path, room, inside
+):
     (tmp_path / 'canary.txt').write_text('x')
     code = WALK.replace('SKIPPED', repr(('/proc', '/usr', '/dev', *PYTHONS))).replace(
         'WHAT', 'path'
@@ -74,7 +78,7 @@ def test_the_course_and_the_machines_own_are_not_there(shared_sandbox, tmp_path,
     }
 
 
-def test_only_a_small_disk_can_be_written_to(shared_sandbox, inside):
+def test_a_room_can_write_only_to_its_own_temporary_folders(shared_sandbox, inside):
     what = 'not os.path.islink(path) and os.access(path, os.W_OK)'
     code = WALK.replace('SKIPPED', "('/proc',)").replace('print(WHAT)', f'if {what}: print(path)')
     devices = ('/dev/null', '/dev/zero', '/dev/full', '/dev/random', '/dev/urandom', '/dev/tty')
@@ -104,7 +108,7 @@ def status(sandbox, room='student', look=run):
     return {k: v.strip() for k, _, v in (line.partition(':') for line in lines)}
 
 
-def test_a_room_has_no_rights(shared_sandbox, inside):
+def test_a_room_has_no_capabilities_and_a_seccomp_filter(shared_sandbox, inside):
     seen = status(shared_sandbox, look=inside)
     assert {seen[f'Cap{kind}'] for kind in ('Inh', 'Prm', 'Eff', 'Bnd', 'Amb')} == {'0' * 16}
     assert (seen['NoNewPrivs'], seen['Seccomp']) == ('1', '2')
@@ -112,7 +116,7 @@ def test_a_room_has_no_rights(shared_sandbox, inside):
 
 
 def stays(stack):
-    """Look as `run` does, at rooms that stay: the numbers of one that has gone are given again."""
+    """Look as `run` does, at rooms that stay: Linux reuses the numbers of ended namespaces."""
 
     def look(sandbox, code, *, room):
         code += "print('.', flush=True); import time; time.sleep(1000)"
@@ -159,7 +163,7 @@ except OSError as error:
 """
 
 
-def test_nothing_outside_is_reached_by_network(shared_sandbox, inside):
+def test_a_room_reaches_nothing_outside_by_network(shared_sandbox, inside):
     abstract = f'\0a-socket-of-the-machine-{os.getpid()}'
     with (
         socket.create_server(('127.0.0.1', 0)) as server,
@@ -175,7 +179,10 @@ def test_nothing_outside_is_reached_by_network(shared_sandbox, inside):
         )
         outside = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
         words = outside.stdout.split()
-        assert (words[0], words[2]) == ('reached', 'reached')  # so it can be seen
+        assert (words[0], words[2]) == (
+            'reached',
+            'reached',
+        )  # outside, the same code reaches both
 
 
 NUMBERS = {
@@ -206,7 +213,7 @@ for family in range(1, 46):
 """
 
 
-def test_system_calls_that_nobody_needs_are_refused(shared_sandbox, inside):
+def test_system_calls_and_sockets_that_are_not_allowed_are_refused(shared_sandbox, inside):
     said = inside(shared_sandbox, CALLS).splitlines()
     assert [line for line in said if 'socket' not in line] == []
     sockets = {tuple(map(int, line.split()[1:])) for line in said}
@@ -263,7 +270,7 @@ print('all of it')
 
 
 @pytest.mark.parametrize('counted', [True, False])
-def test_an_ordinary_program_runs_as_anywhere(loop, monkeypatch, inside, counted):
+def test_an_ordinary_program_runs_in_a_room(loop, monkeypatch, inside, counted):
     if not counted:
         monkeypatch.setattr(module, '_sandbox_cgroups', lambda: None)
     sandbox = Sandbox(slot=next(SLOTS))
@@ -282,7 +289,7 @@ for number in (29, 64, 68):
 """
 
 
-def test_what_no_cgroup_counts_can_not_be_hidden(loop, monkeypatch, inside):
+def test_shared_memory_is_refused_where_no_cgroup_counts_it(loop, monkeypatch, inside):
     monkeypatch.setattr(module, '_sandbox_cgroups', lambda: None)
     sandbox = Sandbox(slot=next(SLOTS))
     loop.run(sandbox.open())
@@ -302,7 +309,7 @@ for process in ('self', '1'): print(open(f'/proc/{process}/oom_score_adj').read(
 """
 
 
-def test_who_ends_first_when_memory_runs_out_is_not_the_students_to_say(shared_sandbox, inside):
+def test_student_code_cannot_lower_its_oom_score(shared_sandbox, inside):
     assert inside(shared_sandbox, MERCY).split() == ['1000', '1000']
 
 
@@ -313,12 +320,12 @@ for number in range(16):
 """
 
 
-def test_no_limit_is_inherited(shared_sandbox, inside):
+def test_each_resource_limit_is_set_for_a_room_and_none_is_inherited(shared_sandbox, inside):
     said = [tuple(map(int, line.split())) for line in inside(shared_sandbox, LIMITS).splitlines()]
     assert said == [(number, most, most) for number, most in sorted(process_limits().items())]
     assert len(said) == 16
     assert all(most >= 0 for _, most, _ in said)
 
 
-def test_a_terminal_is_out_of_reach(shared_sandbox, inside):
+def test_the_terminal_of_the_grader_cannot_be_opened_in_a_room(shared_sandbox, inside):
     assert 'No such device or address' in inside(shared_sandbox, "open('/dev/tty')")

@@ -1,4 +1,4 @@
-"""How sandboxes are opened and closed, and what outlives one."""
+"""Sandboxes open and close, and no process or file outlives one."""
 
 import asyncio
 import contextlib
@@ -43,7 +43,7 @@ def pids(network):
 
 
 @pytest.mark.parametrize('code', [LINGER, LINGER.replace('time.sleep(1000)', 'os._exit(0)')])
-def test_nothing_outlives_the_sandbox(loop, code):
+def test_no_process_outlives_a_closed_sandbox(loop, code):
     sandbox = Sandbox(slot=next(SLOTS))
     loop.run(sandbox.open())
     network = os.readlink(f'/proc/{sandbox._holder.pid}/ns/net')
@@ -73,7 +73,7 @@ asyncio.run(main())
 """
 
 
-def test_nothing_outlives_a_grader_that_is_killed():
+def test_no_process_of_a_sandbox_outlives_a_killed_grader():
     grader = subprocess.Popen(
         [sys.executable, '-c', GRADER], stdout=subprocess.PIPE, text=True, cwd=ROOT
     )
@@ -96,7 +96,7 @@ def test_a_kill_in_the_room_kills_only_the_room(shared_sandbox):
     witness.communicate(timeout=60)
 
 
-def test_a_sandbox_that_can_not_be_made_is_the_graders_failure(loop, monkeypatch):
+def test_a_sandbox_that_cannot_be_made_counts_as_a_failure_of_the_grader(loop, monkeypatch):
     monkeypatch.setattr(bubblewrap, '_HOLD', 'echo nothing works >&2; exit 1')
     sandbox = Sandbox(slot=next(SLOTS))
     with pytest.raises(RoomFailure, match='the sandbox could not be made: nothing works'):

@@ -61,7 +61,7 @@ BOMBS = {
 @pytest.mark.parametrize(('code', 'said'), BOMBS.values(), ids=BOMBS)
 def test_a_room_can_use_up_only_its_share(sandbox, code, said):
     assert run(sandbox, code) == said
-    # the other room has all of its own
+    # the other room still has its whole share
     fine = (
         "open('/room/home/x', 'wb').write(bytes(30 * 10**6))\n"
         "import os; os.fork() and print('fine')"  # a child may not live to print
@@ -84,7 +84,7 @@ SMALL = "kept = b'x' * 150_000_000; import time; time.sleep(1000)"
 
 
 @pytest.mark.parametrize('counted', ['by a cgroup', 'by looking'])
-def test_processes_share_one_limit_of_memory(loop, monkeypatch, counted):
+def test_processes_of_a_room_share_one_memory_limit(loop, monkeypatch, counted):
     for each in (cgroups, memory_watch):
         monkeypatch.setattr(each, 'ROOM_MEMORY_BYTES', 200_000_000)
     if counted == 'by looking':
@@ -97,10 +97,10 @@ def test_processes_share_one_limit_of_memory(loop, monkeypatch, counted):
         room = begin(sandbox, SWELL)
         said = await asyncio.to_thread(room.stdout.read)
         await asyncio.to_thread(room.wait, 60)
-        assert test_room.poll() is None  # it is larger than each, and in a room of its own
+        assert test_room.poll() is None  # larger than each of the others, but alone in its room
         await sandbox.close()
         test_room.wait(60)
         return said.splitlines()
 
-    # one of the three has its place
+    # one of the three fits into the limit
     assert '[9, 9]' in loop.run(swell())

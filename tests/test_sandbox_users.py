@@ -1,4 +1,4 @@
-"""As which user student code runs, if root grades and if an ordinary user does."""
+"""The Linux user that runs student code, if root grades and if an ordinary user does."""
 
 import os
 import subprocess
@@ -110,7 +110,7 @@ except OSError as error: print(error.strerror)
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.geteuid() != 0, reason='we are an ordinary user')
-def test_files_on_their_way_in_one_room_stop_none_elsewhere(tmp_path_factory):
+def test_descriptors_in_flight_in_one_room_do_not_block_other_rooms(tmp_path_factory):
     code = f"""
 import resource
 resource.setrlimit(resource.RLIMIT_NOFILE, (1_024, 4_096))  # as for a login

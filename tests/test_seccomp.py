@@ -1,4 +1,4 @@
-"""The filter, run here instruction by instruction: what is not allowed is denied."""
+"""The seccomp filter, run here instruction by instruction, denies all that is not listed."""
 
 import re
 import struct
@@ -57,15 +57,15 @@ def outcome(number, *arguments, architecture=X86_64, counted=True):
             return k
 
 
-def test_exactly_what_is_allowed_is_there():
-    arguments = (AF_UNIX,)  # what sockets may be; no flag of mmap and of clone that matters
+def test_exactly_the_listed_system_calls_are_allowed():
+    arguments = (AF_UNIX,)  # an allowed family of sockets, and a harmless flag of mmap and clone
     outcomes = {number: outcome(number, *arguments) for number in range(600)}
     outcomes[ALLOWED['seccomp']] = outcome(ALLOWED['seccomp'], 1, 8)  # only with a listener
     assert {n for n, came in outcomes.items() if came == ALLOW} == set(ALLOWED.values())
     assert set(outcomes.values()) == {ALLOW, ENOSYS}
 
 
-def test_what_is_newer_than_the_table_is_not_there():
+def test_system_calls_newer_than_the_table_are_denied():
     assert {outcome(number) for number in NEWEST} == {ENOSYS}
     assert {outcome(number) for number in (2**31 - 1, 2**32 - 1)} == {ENOSYS}
 
@@ -77,17 +77,17 @@ def known():
     return dict(re.findall(r'#define __NR_(\w+) (\d+)', HEADER.read_text()))
 
 
-def test_what_does_harm_is_not_there(known):
+def test_harmful_system_calls_are_denied(known):
     assert set(HARMFUL) <= known.keys()
     assert {outcome(int(known[name])) for name in HARMFUL} == {ENOSYS}
 
 
-def test_the_numbers_are_those_of_this_machines_headers(known):
+def test_system_call_numbers_match_the_headers_of_this_machine(known):
     assert {n: int(known[n]) for n in ALLOWED if n in known}.items() <= ALLOWED.items()
     assert len(ALLOWED.keys() & known.keys()) > 230
 
 
-def test_only_some_families_and_protocols_have_sockets():
+def test_sockets_are_allowed_only_for_listed_families_and_protocols():
     socket = ALLOWED['socket']
     allowed = {
         (family, protocol)
@@ -101,7 +101,7 @@ def test_only_some_families_and_protocols_have_sockets():
     assert {outcome(socket, f, 1, mptcp) for f in (AF_INET, AF_INET6)} == {EAFNOSUPPORT}
 
 
-def test_only_local_sockets_come_in_pairs():
+def test_socket_pairs_are_allowed_only_for_unix_sockets():
     pairs = {f for f in range(64) if outcome(ALLOWED['socketpair'], f, 1, 0) == ALLOW}
     assert pairs == {AF_UNIX}
 
@@ -109,13 +109,13 @@ def test_only_local_sockets_come_in_pairs():
 NEW = [0x00020000, 0x02000000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000]
 
 
-def test_a_process_is_made_with_no_namespace_of_its_own():
+def test_clone_is_refused_with_flags_for_new_namespaces():
     clone, thread, fork = ALLOWED['clone'], 0x003D0F00, 0x01200011
     assert {outcome(clone, flags) for flags in (thread, fork, 17)} == {ALLOW}
     assert {outcome(clone, flag | 17) for flag in NEW} == {EPERM}
 
 
-def test_a_filter_is_added_with_a_listener_alone_of_which_there_is_one():
+def test_another_seccomp_filter_may_be_added_only_with_a_listener():
     assert outcome(ALLOWED['seccomp'], 1, 8) == ALLOW
     assert {outcome(ALLOWED['seccomp'], 1, flags) for flags in (0, 1, 9, 16)} == {EPERM}
 
@@ -124,7 +124,7 @@ PRIVATE, SHARED, VALIDATED, ANONYMOUS = 0x02, 0x01, 0x03, 0x20
 
 
 @pytest.mark.parametrize('counted', [True, False])
-def test_memory_that_nobody_is_seen_to_have_needs_somebody_who_counts_it(counted):
+def test_shared_anonymous_memory_is_allowed_only_if_a_cgroup_counts_it(counted):
     def asked(flags):
         return outcome(ALLOWED['mmap'], 0, 4096, 3, flags, counted=counted)
 
@@ -134,6 +134,6 @@ def test_memory_that_nobody_is_seen_to_have_needs_somebody_who_counts_it(counted
 
 
 @pytest.mark.parametrize('number', [0, 1, ALLOWED['socket'], 165])
-def test_another_set_of_system_calls_is_none(number):
+def test_system_calls_of_other_architectures_are_denied(number):
     assert outcome(number | 0x40000000) == ENOSYS
     assert outcome(number, architecture=AARCH64) == KILL

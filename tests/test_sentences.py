@@ -1,4 +1,4 @@
-"""Templates are found in code, and a sentence that was made by them is translated."""
+"""Templates are collected from code, and a sentence made from them is translated."""
 
 import pytest
 from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
@@ -44,11 +44,11 @@ def check(seen, kind, name):
 """
 
 
-def test_what_nobody_reads_is_no_sentence():
+def test_strings_that_nobody_reads_are_not_collected_as_sentences():
     assert messages_in(NOT_READ) == ['this is read', 'code']
 
 
-def test_the_sentences_of_code_are_templates_with_a_name_for_each_place():
+def test_sentences_in_code_become_templates_with_named_placeholders():
     assert messages_in(CODE, title=True) == [
         'over {n} s ({len} message{value})',
         '{name} {value} the line',
@@ -62,7 +62,7 @@ def test_the_sentences_of_code_are_templates_with_a_name_for_each_place():
     assert 'Each value is doubled' not in messages_in(CODE)
 
 
-def test_the_words_for_a_picture_are_those_that_are_marked():
+def test_only_marked_words_of_a_picture_are_collected():
     marked = "gettext_noop('graph') + f': {a}' + gettext_noop(f'{len(a)} of {b:g} ms')"
     assert described_in(marked) == ['graph', '{len} of {b} ms']
 
@@ -116,7 +116,7 @@ def test_a_sentence_is_translated_by_the_templates_that_fit_it(english, chinese)
 @pytest.mark.parametrize(
     'text', ['a, b' * 400, 'x is ' * 300, 'a and ' * 300, '. ' * 900, 'x' * (MOST_CHARACTERS + 1)]
 )
-def test_what_a_student_made_up_takes_a_bounded_number_of_tries(text):
+def test_arbitrary_text_is_translated_in_a_bounded_number_of_tries(text):
     sentences = Sentences(TEMPLATES)
     assert isinstance(sentences.translate(text), str)
     assert sentences._tries < 10_000

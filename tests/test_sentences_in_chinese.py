@@ -1,4 +1,4 @@
-"""What the course says of checks, nodes and kernels, sentence by sentence in Chinese."""
+"""Sentences of the course about checks, nodes and kernels, translated into Chinese."""
 
 import pytest
 from chinese_reason import CHINESE_REASON, REASON
@@ -7,7 +7,7 @@ from my_robot_basics.language.sentences import REASON as REASON_FORM
 from my_robot_basics.language.speaking import in_language
 
 
-def test_a_reason_of_the_course_is_told_in_chinese():
+def test_a_reason_of_the_course_is_translated_into_chinese():
     assert in_language('zh_CN', REASON) == CHINESE_REASON
     assert in_language('en', REASON) == REASON
 
@@ -56,14 +56,14 @@ WITH_COLONS = {
 
 
 @pytest.mark.parametrize(('english', 'parts'), WITH_COLONS.items())
-def test_a_reason_is_parted_where_what_was_seen_and_the_hint_are_known(english, parts):
+def test_a_reason_with_colons_is_split_into_expected_seen_and_hint(english, parts):
     assert speaking.sentences('zh_CN').parts(REASON_FORM, english) == parts
     assert in_language('zh_CN', english) == (
         '预期：{expected}；实际：{seen}。{hint}'.format(**parts)
     )
 
 
-def test_what_is_no_reason_has_no_parts():
+def test_a_sentence_that_is_not_a_reason_has_no_parts():
     assert speaking.sentences('zh_CN').parts(REASON_FORM, 'it ended') == {}
 
 
@@ -135,7 +135,7 @@ OF_THE_DOCTOR_AND_LIVE = {
 
 
 @pytest.mark.parametrize(('english', 'chinese'), OF_THE_DOCTOR_AND_LIVE.items())
-def test_the_doctor_and_live_speak_chinese(english, chinese):
+def test_sentences_of_topic_doctor_and_live_are_translated_into_chinese(english, chinese):
     assert in_language('zh_CN', english) == chinese
 
 
@@ -169,7 +169,7 @@ OF_CHECKS = {
 
 
 @pytest.mark.parametrize(('english', 'chinese'), OF_CHECKS.items())
-def test_what_checks_have_seen_is_said_in_chinese(english, chinese):
+def test_observations_of_checks_are_translated_into_chinese(english, chinese):
     assert in_language('zh_CN', english) == chinese
 
 
@@ -303,11 +303,11 @@ OF_STUDENTS = {
 
 
 @pytest.mark.parametrize(('english', 'chinese'), OF_STUDENTS.items())
-def test_what_is_a_students_stays_whole_between_chinese_words(english, chinese):
+def test_names_and_code_of_students_stay_whole_in_chinese_sentences(english, chinese):
     assert in_language('zh_CN', english) == chinese
 
 
-def test_a_number_of_ends_is_told_in_chinese():
+def test_a_number_of_publishers_or_subscriptions_is_translated_into_chinese():
     shown = in_language('zh_CN', COUNTED)
     assert shown.startswith('预期：2 个发布者；实际：4')
     assert in_language('zh_CN', 'expected 4 subscriptions, saw 0 (no name): keep both keys') == (

@@ -1,4 +1,4 @@
-"""What is handed in is graded and its feedback released, one process for all."""
+"""One process grades all submissions as they come in, and releases their feedback."""
 
 import os
 import time
@@ -54,7 +54,7 @@ def states(course):
     return [(each.student_id, each.state) for each in every]
 
 
-def test_what_is_handed_in_is_graded_and_its_page_is_where_nbgrader_looks(course, inbound):
+def test_a_submission_is_graded_and_its_page_is_where_nbgrader_looks_for_it(course, inbound):
     hand_in(course, inbound, 'ada', RIGHT, secret='aa')
     hand_in(course, inbound, 'bob', WRONG, secret='bb')
     said = serve_here(course, inbound)
@@ -72,14 +72,14 @@ def test_what_is_handed_in_is_graded_and_its_page_is_where_nbgrader_looks(course
     assert not list((course.gradebook / intake.FOLDER).iterdir())
 
 
-def test_the_score_is_that_of_grade(course, inbound):
+def test_a_served_score_is_reused_by_the_command_grade(course, inbound):
     hand_in(course, inbound, 'ada', RIGHT)
     serve_here(course, inbound)
     (row,) = grade_here(course)
     assert row.reused
 
 
-def test_what_was_graded_is_not_graded_again_and_the_later_one_counts(course, inbound):
+def test_a_graded_submission_is_not_graded_again_and_a_later_one_replaces_it(course, inbound):
     hand_in(course, inbound, 'ada', WRONG, secret='aa')
     serve_here(course, inbound)
     assert serve_here(course, inbound) == []
@@ -90,7 +90,7 @@ def test_what_was_graded_is_not_graded_again_and_the_later_one_counts(course, in
     assert page_of(inbound, 'aa').read_text() != page_of(inbound, 'bb').read_text()
 
 
-def test_the_same_once_more_has_its_page_under_its_own_secret(course, inbound):
+def test_the_same_answer_submitted_again_has_a_page_under_its_own_secret(course, inbound):
     hand_in(course, inbound, 'ada', RIGHT, secret='aa')
     serve_here(course, inbound)
     hand_in(course, inbound, 'ada', RIGHT, number=2, secret='bb')
@@ -98,7 +98,7 @@ def test_the_same_once_more_has_its_page_under_its_own_secret(course, inbound):
     assert page_of(inbound, 'bb').read_bytes() == page_of(inbound, 'aa').read_bytes()
 
 
-def test_the_newest_is_graded_and_those_before_it_are_kept(course, inbound):
+def test_the_newest_submission_is_graded_and_earlier_ones_are_kept(course, inbound):
     for number, answer in enumerate((WRONG, '# 2', RIGHT), start=1):
         folder = hand_in(course, inbound, 'ada', answer, number=number)
         time.sleep(0.02)  # Linux's clock tells them apart
@@ -111,7 +111,7 @@ def test_the_newest_is_graded_and_those_before_it_are_kept(course, inbound):
     assert 'return 2 * x' in there
 
 
-def test_a_claimed_time_is_not_believed(course, inbound):
+def test_a_submission_time_claimed_by_the_student_is_not_used(course, inbound):
     """The folder's name and its timestamp.txt are the student's to write."""
     began = datetime.now(UTC) - timedelta(seconds=1)  # Linux's clock of files is a little behind
     hand_in(course, inbound, 'ada', RIGHT)
@@ -121,7 +121,7 @@ def test_a_claimed_time_is_not_believed(course, inbound):
     assert began <= stamp <= ended
 
 
-def test_what_is_over_the_limit_is_kept_and_says_so(course, inbound, capsys):
+def test_a_submission_over_the_limit_is_kept_and_shown_in_the_status(course, inbound, capsys):
     (course.gradebook / 'deadlines.toml').write_text('[resubmissions]\nin_total = 1\n')
     hand_in(course, inbound, 'ada', WRONG)
     serve_here(course, inbound)
@@ -137,11 +137,11 @@ def test_what_is_over_the_limit_is_kept_and_says_so(course, inbound, capsys):
     assert states(course) == [('ada', GRADED), ('ada', GRADED)]
 
 
-def test_what_is_nobodys_is_listed_for_a_person(course, inbound, capsys):
+def test_a_submission_without_a_known_student_is_listed_for_a_person(course, inbound, capsys):
     hand_in(course, inbound, 'ada', RIGHT)
     (inbound / 'whose.ipynb').write_text('{}')
     os.utime(inbound / 'whose.ipynb')
-    time.sleep(1.1)  # nothing but time says that it is whole
+    time.sleep(1.1)  # only its age shows that it is complete
     said = serve_here(course, inbound)
     assert any(line.startswith('not taken, look at it: whose.ipynb: ') for line in said)
     assert sorted(state for _, state in states(course)) == [GRADED, REFUSED]
@@ -154,7 +154,7 @@ def test_what_is_nobodys_is_listed_for_a_person(course, inbound, capsys):
     assert '<script' not in page
 
 
-def test_without_a_folder_it_says_which_one_to_name(course, inbound, capsys):
+def test_serve_without_a_folder_reports_which_folder_to_name(course, inbound, capsys):
     assert main(['serve'], course=course) == 1
     said = capsys.readouterr().err
     assert said.startswith('course: name the folder into which submissions are put, ')
@@ -164,7 +164,7 @@ def test_without_a_folder_it_says_which_one_to_name(course, inbound, capsys):
     assert f'{inbound / "nowhere"} is no folder: expected the one' in capsys.readouterr().err
 
 
-def test_a_platforms_folder_is_served_as_it_is_collected(course, tmp_path):
+def test_a_folder_filled_by_another_platform_is_served_with_its_changes(course, tmp_path):
     folder = tmp_path / 'uploads'
     (folder / 'bob' / TOY).mkdir(parents=True)
     (folder / 'bob' / TOY / f'{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
@@ -178,7 +178,7 @@ def test_a_platforms_folder_is_served_as_it_is_collected(course, tmp_path):
     assert [state for _, state in states(course)] == [GRADED] * 3
 
 
-def test_half_a_submission_waits_for_the_rest(course, inbound):
+def test_an_incomplete_submission_waits_until_it_is_complete(course, inbound):
     folder = hand_in(course, inbound, 'ada', RIGHT)
     folder.chmod(0o755)  # as it is before nbgrader's last step
     assert list(new_entries(inbound, {})) == []
@@ -186,13 +186,13 @@ def test_half_a_submission_waits_for_the_rest(course, inbound):
     assert [each.name for each in new_entries(inbound, {})] == [folder.name]
 
 
-def test_one_process_serves_a_gradebook(course, inbound):
+def test_only_one_process_may_serve_a_gradebook(course, inbound):
     with only_one(course), pytest.raises(CourseError, match='another process serves'):
         serve_here(course, inbound)
 
 
 @pytest.mark.slow
-def test_inputs_are_chosen_anew_for_another_answer_and_kept_for_the_same(course, inbound):
+def test_seeds_follow_the_answer_only_if_hidden_inputs_are_chosen_anew(course, inbound):
     """The final grade replays: the seed follows from what was handed in."""
 
     def seed():
@@ -213,7 +213,7 @@ def test_inputs_are_chosen_anew_for_another_answer_and_kept_for_the_same(course,
     assert row.reused
 
 
-def test_one_of_a_student_s_is_begun_at_a_time_though_there_is_room(course, tmp_path, monkeypatch):
+def test_only_one_submission_of_a_student_is_graded_at_a_time(course, tmp_path, monkeypatch):
     begun = []
 
     def begin(desk, arrival, earlier):
@@ -238,7 +238,7 @@ def test_one_of_a_student_s_is_begun_at_a_time_though_there_is_room(course, tmp_
     assert begun[2:] == [('ada', 'a')]
 
 
-def test_the_final_grade_of_inputs_that_are_chosen_anew_replays_exactly(course, inbound, capsys):
+def test_a_grade_with_newly_chosen_hidden_inputs_is_replayed_exactly(course, inbound, capsys):
     (course.gradebook / 'deadlines.toml').write_text('[resubmissions]\nhidden_inputs = "anew"\n')
     hand_in(course, inbound, 'ada', WRONG)
     serve_here(course, inbound)
@@ -254,7 +254,7 @@ def test_the_final_grade_of_inputs_that_are_chosen_anew_replays_exactly(course, 
 
 
 def test_a_student_submits_and_fetches_feedback_with_nbgrader_itself(course, tmp_path):
-    """Its own code puts the folder there, and finds the page, which is ours."""
+    """nbgrader's own code makes the folder of the submission, and finds our page."""
     exchange, student = tmp_path / 'exchange', tmp_path / 'student'
     for folder in ('inbound', 'outbound', 'feedback'):
         (exchange / 'robots' / folder).mkdir(parents=True)
@@ -274,7 +274,7 @@ def test_a_student_submits_and_fetches_feedback_with_nbgrader_itself(course, tmp
 
     exchange.chmod(0o777)
     nbgrader(ExchangeSubmit)
-    assert len(list(new_entries(exchange / 'robots' / 'inbound', {}))) == 1  # whole at once
+    assert len(list(new_entries(exchange / 'robots' / 'inbound', {}))) == 1  # complete at once
     serve_here(course, exchange / 'robots' / 'inbound')
     nbgrader(ExchangeFetchFeedback)
     (fetched,) = student.glob(f'{TOY}/feedback/*/{TOY}.html')

@@ -1,4 +1,4 @@
-"""Whatever ends `./course serve`, or runs beside it, nothing is lost or graded otherwise."""
+"""Whatever ends `./course serve`, or runs beside it, nothing is lost or graded differently."""
 
 import random
 import signal
@@ -37,7 +37,7 @@ def killed_rounds(course, inbound, rounds, chance):
             latest[student] = (answer, secret)
             hand_in(course, inbound, student, answer, number=number, secret=secret)
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        for line in process.stdout:  # killed once it is at work: not by the time it has started
+        for line in process.stdout:  # killed once it is at work, not while it starts
             if 'taken in' in line:
                 break
         time.sleep(chance.uniform(0, 1.5))
@@ -52,7 +52,7 @@ def killed_rounds(course, inbound, rounds, chance):
 
 
 def same_as_undisturbed(course, inbound, handed_in, latest):
-    """Nothing is lost, nothing is graded otherwise than an undisturbed run does it."""
+    """Assert that nothing is lost, and that each score and page is as in an undisturbed run."""
     with queue_to_read(course.gradebook) as queue:
         arrivals = queue.find(GRADED, REPLACED, WAITING, REFUSED, FAILED, 'grading')
     assert len(arrivals) == len({each.entry for each in arrivals}) == handed_in
@@ -80,14 +80,16 @@ def same_as_undisturbed(course, inbound, handed_in, latest):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('rounds', [2, 20])
-def test_killed_at_random_moments_it_loses_nothing(rounds, tmp_path, inbound):
+def test_serve_killed_at_random_moments_loses_no_submission_page_or_score(
+    rounds, tmp_path, inbound
+):
     course = released_course(tmp_path / 'course')
     handed_in, latest = killed_rounds(course, inbound, rounds, random.Random(rounds))
     same_as_undisturbed(course, inbound, handed_in, latest)
 
 
 @pytest.mark.slow
-def test_grade_may_run_beside_it(tmp_path, inbound):
+def test_grade_may_run_beside_serve(tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     process = subprocess.Popen(
         serving_desk.command(course, inbound), stdout=subprocess.PIPE, text=True
@@ -120,7 +122,7 @@ def test_grade_may_run_beside_it(tmp_path, inbound):
 
 
 @pytest.mark.slow
-def test_sigterm_ends_it_and_the_next_one_goes_on(tmp_path, inbound):
+def test_sigterm_ends_serve_and_its_submission_stays_in_the_queue(tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     hand_in(course, inbound, 'ada', f'# 600 s\n{RIGHT}')
     command = serving_desk.command(course, inbound)

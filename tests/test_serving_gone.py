@@ -1,4 +1,4 @@
-"""What is said of entries of inbound folders: until they are gone, of each folder for itself."""
+"""Entries of inbound folders are listed until they are gone, separately for each folder."""
 
 import os
 import sqlite3
@@ -27,7 +27,7 @@ def inbound(came_in):
     return came_in
 
 
-def test_what_is_refused_is_listed_until_it_is_gone_and_looked_into_where_it_comes_back(
+def test_a_refused_entry_is_listed_until_it_is_gone_and_again_when_it_returns(
     course, inbound, at_once
 ):
     refused = inbound / 'mallory_nothing.ipynb'
@@ -60,10 +60,8 @@ def refused_here(course, inbound):
         yield Gone(desk), refused
 
 
-def test_what_was_taken_in_in_part_is_not_handed_in_again_where_it_comes_back(
-    inbound, refused_here, course
-):
-    """As after a moment in which a network's file system shows nothing."""
+def test_a_partly_graded_entry_is_still_known_after_it_vanishes(inbound, refused_here, course):
+    """A network file system may show an empty folder for a moment."""
     gone, refused = refused_here
     refused('all.zip', 'zoe')
     refused('nothing.zip')
@@ -75,7 +73,7 @@ def test_what_was_taken_in_in_part_is_not_handed_in_again_where_it_comes_back(
         assert queue.seen() == {'all.zip': '1'}
 
 
-def test_what_is_gone_in_the_same_second_as_another_is_not_missed(
+def test_an_entry_that_vanishes_in_the_same_second_as_another_is_noticed(
     inbound, refused_here, monkeypatch
 ):
     """Some file systems count the time of a change in seconds."""
@@ -90,7 +88,7 @@ def test_what_is_gone_in_the_same_second_as_another_is_not_missed(
         assert gone.forget()
 
 
-def test_a_file_that_is_gone_takes_no_grade_with_it(course, inbound, at_once):
+def test_deleting_an_inbound_file_keeps_its_grade(course, inbound, at_once):
     (inbound / f'zoe_{TOY}.ipynb').write_text(nbformat.writes(answered(course, RIGHT)))
     serve_here(course, inbound)
     (inbound / f'zoe_{TOY}.ipynb').unlink()
@@ -109,7 +107,9 @@ def listed(course):
     return sorted(each.entry for each in arrivals(course))
 
 
-def test_entries_of_one_folder_are_listed_while_another_is_served(course, inbound, other, at_once):
+def test_entries_of_one_folder_stay_listed_while_another_folder_is_served(
+    course, inbound, other, at_once
+):
     (inbound / 'of both.ipynb').write_text('{}')
     (inbound / 'of one.ipynb').write_text('{}')
     (other / 'of both.ipynb').write_text('{ }')
@@ -122,7 +122,9 @@ def test_entries_of_one_folder_are_listed_while_another_is_served(course, inboun
     assert serve_here(course, inbound) == []
 
 
-def test_a_folder_with_names_of_another_is_taken_in_once(course, inbound, other, at_once):
+def test_two_folders_with_equal_entry_names_are_each_taken_in_once(
+    course, inbound, other, at_once
+):
     for folder in inbound, other, inbound, other:
         if not (folder / 'zoe').exists():
             put_there(course, folder, 'zoe')
@@ -131,9 +133,7 @@ def test_a_folder_with_names_of_another_is_taken_in_once(course, inbound, other,
         assert len(queue.find(GRADED, REPLACED)) == 2
 
 
-def test_what_came_into_a_folder_that_has_moved_is_not_taken_in_again(
-    course, inbound, other, at_once
-):
+def test_entries_of_a_moved_folder_are_not_taken_in_again(course, inbound, other, at_once):
     put_there(course, inbound, 'zoe')
     for name in 'nothing.ipynb', 'gone.ipynb':
         (inbound / name).write_text('{}')
@@ -145,7 +145,7 @@ def test_what_came_into_a_folder_that_has_moved_is_not_taken_in_again(
     assert listed(course) == ['nothing.ipynb', 'zoe']
 
 
-def test_a_folder_that_is_mounted_twice_is_one(course, inbound, other):
+def test_a_folder_mounted_under_two_paths_counts_as_one_folder(course, inbound, other):
     with opened_queue(course.gradebook, inbound) as queue:
         queue.add('zoe', 'same files', [])
         queue.add('ada', 'before', [])
@@ -154,7 +154,7 @@ def test_a_folder_that_is_mounted_twice_is_one(course, inbound, other):
         assert queue.seen() == {'zoe': 'same files', 'ada': 'after'}
 
 
-def test_a_queue_of_the_time_before_it_knew_folders_is_gone_on_with(course, inbound, at_once):
+def test_a_queue_file_of_an_older_version_without_folders_is_still_used(course, inbound, at_once):
     put_there(course, inbound, 'zoe')
     (inbound / 'nothing.ipynb').write_text('{}')
     serve_here(course, inbound)

@@ -31,7 +31,7 @@ def test_the_line_that_fixes_a_fault_follows_a_colon_of_the_language():
     assert fields(finding, 'zh_CN')['做法'] == '改正它，再发送一次目标：'
 
 
-def test_what_the_course_says_beside_ros2_is_in_the_language_of_the_terminal(monkeypatch, capsys):
+def test_messages_beside_ros2_output_are_in_the_language_of_the_terminal(monkeypatch, capsys):
     monkeypatch.delenv('JPY_SESSION_NAME', raising=False)
     monkeypatch.setenv(speaking.OF_TERMINALS, 'zh_CN')
     monkeypatch.setattr(environment, '_joined', RunningLesson(0, 7, 1, '03_publisher'))
@@ -68,7 +68,7 @@ def test_chinese_is_broken_into_lines_by_columns_and_no_line_begins_with_a_comma
 
 
 @pytest.mark.parametrize('said', [None, 'tlh', '../..', 3, ['zh_CN'], {'zh_CN': 1}])
-def test_a_notebook_that_names_no_language_of_ours_is_english(said):
+def test_a_notebook_with_an_unknown_language_is_treated_as_english(said):
     assert language_of({'my_robot_basics': {'language': said}}) == 'en'
     assert language_of({'my_robot_basics': said}) == 'en'
     assert language_of({}) == 'en'
@@ -163,7 +163,7 @@ def test_a_cell_is_named_by_its_number_in_each_language():
     assert shown == '单元格 `five_hz`（第 1 个单元格）被改动了：评分时以原来的为准'
 
 
-def test_a_check_that_is_run_by_hand_speaks_the_language_of_its_edition(monkeypatch):
+def test_a_check_run_in_a_lesson_reports_in_the_language_of_its_edition(monkeypatch):
     failed = CheckFailed(REASON)
     monkeypatch.setenv('JPY_SESSION_NAME', '/home/ada/notebooks/03_publisher/03_publisher.ipynb')
     assert ' '.join(failed._render_traceback_()).endswith(REASON[-20:])
@@ -172,12 +172,12 @@ def test_a_check_that_is_run_by_hand_speaks_the_language_of_its_edition(monkeypa
     assert str(failed) == REASON
 
 
-def test_without_catalogues_everything_is_english(monkeypatch, tmp_path):
+def test_every_notebook_is_english_if_there_are_no_catalogues(monkeypatch, tmp_path):
     monkeypatch.setattr(speaking, 'LOCALE', tmp_path)
     assert language_of({'my_robot_basics': {'language': 'zh_CN'}}) == 'en'
 
 
-def test_the_feedback_page_parts_a_reason_by_what_is_known():
+def test_the_feedback_page_splits_a_reason_with_colons_into_its_parts():
     notebook = graded({'language': 'zh_CN'})
     notebook.cells[0].metadata.my_robot_basics.update(
         reason='expected [0.5] rad for (30.0) degrees, saw [30.0]: these are degrees: '

@@ -75,17 +75,17 @@ def test_a_copy_with_other_names_strings_comments_and_layout_is_found_and_shown(
     assert 'self.count % 7' in ' '.join(re.findall(r'<mark>(.*?)</mark>', pair['texts'][0], re.S))
 
 
-def test_a_part_that_was_taken_over_is_found():
+def test_a_copied_part_of_an_answer_is_found():
     half = ADA[ADA.index('    def publish') :]
     other = CLEO[: CLEO.index('    def on_timer')].replace('self.on_timer', 'self.publish') + half
     assert found({'ada': ADA, 'dan': half.replace('angle', 'theta'), 'cleo': CLEO, 'eve': other})
 
 
-def test_two_who_solve_it_in_their_own_way_are_not_alike():
+def test_two_independent_answers_are_not_called_alike():
     assert found({'ada': ADA, 'cleo': CLEO}) == []
 
 
-def test_what_was_released_and_what_many_wrote_does_not_count():
+def test_released_code_and_answers_of_many_students_do_not_count_as_copies():
     assert found({'ada': ADA, 'bob': ADA}, released=ADA) == []
     class_of_20 = {f'student{number}': ADA for number in range(20)}
     assert found(class_of_20) == []
@@ -97,7 +97,7 @@ def test_short_answers_are_not_compared():
     assert found({'ada': short, 'bob': short}) == []
 
 
-def test_of_many_usual_answers_in_other_words_few_are_called_alike():
+def test_few_of_many_answers_written_to_differ_are_called_alike():
     # each was written to be unlike the others
     answers = {each.id: each.code for each in answers_to('five_hz') if each.points == each.full}
     assert len(answers) >= 10
@@ -105,7 +105,7 @@ def test_of_many_usual_answers_in_other_words_few_are_called_alike():
     assert len(pairs) <= len(answers) / 4, pairs
 
 
-def test_a_text_of_a_student_starts_no_html_and_hides_nothing():
+def test_html_in_the_text_of_an_answer_is_escaped():
     evil = ADA.replace("'base_link'", "'</pre><script>'") + '# \u202e\n'
     (pair,) = find_pairs({'ada': evil, 'bob': evil}, SKELETON, 10)
     assert '<script>' not in pair['texts'][0]
@@ -132,7 +132,7 @@ def graded(course, student, answer):
     return SubmissionOutcome(student, TOY, stored, stored.reason, 1.0)
 
 
-def test_the_report_of_a_run_shows_them_side_by_side_and_scores_stay(course):
+def test_the_report_shows_similar_answers_side_by_side_and_scores_stay(course):
     rows = [graded(course, 'ada', LONG), graded(course, '<b>bob', LONG.replace('total', 'sum_'))]
     scores = [row.stored.score for row in rows]
     page = write_report(course, Run(RUN.began), rows).read_text(encoding='utf-8')
@@ -142,12 +142,12 @@ def test_the_report_of_a_run_shows_them_side_by_side_and_scores_stay(course):
     assert [row.stored.score for row in rows] == scores
 
 
-def test_a_run_without_similar_answers_says_nothing_of_them(course):
+def test_a_report_without_similar_answers_has_no_section_for_them(course):
     page = write_report(course, Run(RUN.began), [graded(course, 'ada', LONG)])
     assert 'Answers that are alike' not in page.read_text(encoding='utf-8')
 
 
-def test_what_could_not_be_compared_is_said_and_stops_no_report(course, monkeypatch):
+def test_answers_that_could_not_be_compared_are_reported_as_a_problem(course, monkeypatch):
     def fails(*arguments, limits):
         raise ParsingFailed('it took more than 60 s')
 
@@ -162,7 +162,7 @@ def test_what_could_not_be_compared_is_said_and_stops_no_report(course, monkeypa
 
 
 @pytest.mark.parametrize('more', ['#' * 20_000, '\u202e' * 10_000])
-def test_an_answer_that_is_far_too_long_is_compared_with_none(course, monkeypatch, more):
+def test_an_answer_that_is_far_too_long_is_not_compared(course, monkeypatch, more):
     for student, text in (('ada', LONG), ('bob', LONG), ('eve', f'{LONG}# {more}')):
         graded(course, student, text)
     compared = []

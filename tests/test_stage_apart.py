@@ -1,6 +1,6 @@
 """The stage of predictions is isolated: nothing that a student process sends arrives there.
 
-Their processes know every topic of it that DDS tells them of, publish there, and subscribe.
+Here one publishes and subscribes on every topic that DDS shows it.
 """
 
 import asyncio
@@ -77,8 +77,8 @@ def said(run):
 
 
 @pytest.mark.slow
-def test_who_publishes_on_every_topic_that_there_is_changes_nothing():
+def test_a_student_who_publishes_on_every_visible_topic_changes_no_prediction():
     meets, late, met = asyncio.run(intruded())
-    assert said(meets) in {*'12345'}  # so it does reach what it can
+    assert said(meets) in {*'12345'}  # the intruder does reach a topic of the test room
     assert json.loads(said(late)) == [[False] * 5, 0]
     assert said(met) == "['/mine']"

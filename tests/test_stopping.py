@@ -1,4 +1,4 @@
-"""What ends a process from outside ends it as Ctrl-C does."""
+"""SIGTERM and SIGHUP end a command as Ctrl-C does."""
 
 import signal
 
@@ -13,14 +13,14 @@ SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 @pytest.fixture(autouse=True)
 def as_before():
-    """Each signal is answered after a test as before it."""
+    """Assert that a test leaves the handler of each signal as it was."""
     before = {number: signal.getsignal(number) for number in SIGNALS}
     yield
     assert {number: signal.getsignal(number) for number in SIGNALS} == before
 
 
 @pytest.fixture
-def told(monkeypatch, tmp_path):
+def status_after(monkeypatch, tmp_path):
     """Run a command that receives a signal to stop."""
 
     def run(number):
@@ -34,21 +34,25 @@ def told(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(('number', 'status'), SIGNALS.items())
-def test_the_status_tells_by_which_signal(told, capsys, number, status):
-    assert told(number) == status
+def test_the_exit_status_shows_which_signal_ended_the_command(
+    status_after, capsys, number, status
+):
+    assert status_after(number) == status
     assert 'course: stopped. What was finished is kept; run it again' in capsys.readouterr().err
 
 
-def test_a_terminal_that_is_gone_ends_it_no_otherwise(told, monkeypatch):
+def test_a_command_ends_with_the_status_of_sighup_if_its_terminal_is_gone(
+    status_after, monkeypatch
+):
     class Gone:
         def write(self, text):
             raise OSError(5, 'Input/output error')
 
     monkeypatch.setattr('sys.stderr', Gone())
-    assert told(signal.SIGHUP) == 129
+    assert status_after(signal.SIGHUP) == 129
 
 
-def test_whoever_answers_ctrl_c_answers_all_of_them():
+def test_a_handler_of_ctrl_c_handles_sigterm_and_sighup_too():
     answered = []
     former = signal.signal(signal.SIGINT, lambda number, frame: answered.append(number))
     try:
@@ -60,7 +64,7 @@ def test_whoever_answers_ctrl_c_answers_all_of_them():
     assert answered == [signal.SIGTERM, signal.SIGHUP]
 
 
-def test_ctrl_c_ignored_in_the_background_does_not_keep_others_out():
+def test_sigterm_still_stops_a_command_with_sigint_ignored():
     former = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         with pytest.raises(KeyboardInterrupt), stoppable():
@@ -69,7 +73,7 @@ def test_ctrl_c_ignored_in_the_background_does_not_keep_others_out():
         signal.signal(signal.SIGINT, former)
 
 
-def test_what_nohup_ignores_stays_ignored():
+def test_sighup_ignored_by_nohup_stays_ignored():
     former = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         with stoppable() as stop:

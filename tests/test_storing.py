@@ -24,7 +24,7 @@ from grader.storage.pipeline import apply, prepared_template, resources_of, unan
 from grader.storage.submission_rows import SubmissionRows
 
 MOST_QUESTIONS = 10
-"""To the database, for a submission that it knows, however many cells that has."""
+"""Most database queries for storing a known submission, however many cells it has."""
 
 
 @pytest.fixture(scope='module')
@@ -54,7 +54,7 @@ def graded_toy(course, student, **reasons):
     return submission, executed(unanswered(prepared_template(course, TOY), 'why'), reasons)
 
 
-def test_the_passes_do_what_they_do_in_nbconverts_exporter(course):
+def test_release_passes_do_the_same_as_in_nbconverts_exporter(course):
     passes = PASSES[: PASSES.index('nbgrader.preprocessors.SaveCells')]
     configured = {'Exporter': {'default_preprocessors': []}}
     configured |= {'ClearSolutions': {'code_stub': CODE_STUB}}
@@ -69,7 +69,7 @@ def test_the_passes_do_what_they_do_in_nbconverts_exporter(course):
     assert ours[0] == exporter.from_notebook_node(lesson, at)[0] != lesson
 
 
-def test_what_is_no_notebook_is_refused_before_anything_is_stored(course):
+def test_an_invalid_notebook_is_refused_before_anything_is_stored(course):
     submission, graded = graded_toy(course, 'mona')
     graded.cells[1].outputs = 'none'
     with pytest.raises(nbformat.ValidationError):
@@ -78,7 +78,7 @@ def test_what_is_no_notebook_is_refused_before_anything_is_stored(course):
         book.find_student('mona')
 
 
-def test_storing_takes_one_connection_and_few_questions(course):
+def test_storing_takes_one_connection_and_few_database_queries(course):
     submission, graded = graded_toy(course, 'ada')
     with one_engine(course.db_url):
         store(course, submission, copy.deepcopy(graded))
@@ -88,7 +88,7 @@ def test_storing_takes_one_connection_and_few_questions(course):
     assert len(connections) <= 1
 
 
-def test_a_block_inside_another_one_forgets_what_is_not_committed(course):
+def test_a_nested_connection_block_discards_uncommitted_changes(course):
     grade(course, 'bob', {})
     with connected(course.db_url) as book:
         with connected(course.db_url) as inner:
@@ -103,7 +103,7 @@ def test_a_block_inside_another_one_forgets_what_is_not_committed(course):
         assert another is not book
 
 
-def test_rows_are_found_as_nbgrader_finds_them(course):
+def test_rows_of_a_submission_are_found_as_by_nbgrader(course):
     grade(course, 'cleo', {}, explained='so')
     with connected(course.db_url) as book:
         rows = SubmissionRows(book, book.find_submission(TOY, 'cleo'), TOY)
@@ -116,7 +116,7 @@ def test_rows_are_found_as_nbgrader_finds_them(course):
                 find('gone')
 
 
-def test_metadata_is_checked_once_and_what_is_wrong_with_it_each_time(course, monkeypatch):
+def test_valid_metadata_is_checked_once_and_invalid_metadata_each_time(course, monkeypatch):
     looked = []
     does = MetadataValidator.validate_nb
     monkeypatch.setattr(

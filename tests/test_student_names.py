@@ -20,11 +20,11 @@ from grader.common.student_names import UnclearOwner, problem_of_id
         ('Zoe\u0308', 'Zo\u00eb'),
     ],
 )
-def test_what_a_course_management_system_adds_is_no_part_of_a_name(name, student):
+def test_additions_of_a_course_management_system_are_removed_from_a_name(name, student):
     assert student_in(name) == student
 
 
-def test_what_can_be_no_name_is_refused():
+def test_two_dots_are_refused_as_the_name_of_a_student():
     with pytest.raises(UnclearOwner, match='no name of a student'):
         student_in('..')
 
@@ -32,7 +32,7 @@ def test_what_can_be_no_name_is_refused():
 @pytest.mark.parametrize(
     'student', ['ada', '小明', "O'Neill", 'é' * 100, 'a.b', 'نگار\u200cمحمدی']
 )
-def test_an_id_that_can_be_a_folder_has_no_problem(student):
+def test_a_student_id_that_can_be_a_folder_name_has_no_problem(student):
     assert problem_of_id(student) == ''
     assert Path(student).name == student
 
@@ -57,5 +57,5 @@ NO_IDS = [
 
 
 @pytest.mark.parametrize('student', NO_IDS)
-def test_an_id_that_can_t_be_a_folder_has_one(student):
+def test_a_student_id_that_cannot_be_a_folder_name_has_a_problem(student):
     assert problem_of_id(student)

@@ -22,7 +22,7 @@ BEHIND_THEM = {'launcher', 'locale'}
 
 @pytest.fixture(scope='module')
 def students(tmp_path_factory):
-    """The real bundle, unpacked; that its lessons are fresh is for test_release.py to say."""
+    """The real bundle, unpacked; test_release.py tests that its lessons are up to date."""
     folder = tmp_path_factory.mktemp('a student')
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr('grader.authoring.bundle.stale_or_leaking', lambda course: [])
@@ -30,7 +30,7 @@ def students(tmp_path_factory):
     return unpacked(folder / 'students.zip', folder)
 
 
-def test_its_readme_says_what_is_so(students):
+def test_the_readme_of_the_bundle_matches_its_verbs_and_folders(students):
     readme = (students / 'README.md').read_text()
     usage = subprocess.run([students / 'course', '--help'], capture_output=True, text=True)
     assert usage.returncode == 0
@@ -53,13 +53,13 @@ def test_its_readme_says_what_is_so(students):
     assert (students / 'notebooks/02_joint_state/02_joint_state.ipynb').is_file()
 
 
-def test_what_lab_is_given_is_there(students):
+def test_files_that_lab_needs_are_in_the_bundle(students):
     assert (students / 'notebooks/index.ipynb').is_file()
     assert (students / languages.SETTINGS).is_dir()
     assert (students / lab.TERMINAL).is_file()
 
 
-def test_a_verb_that_needs_the_grader_says_so(students):
+def test_a_verb_that_needs_the_grader_is_refused_as_for_instructors(students):
     run = subprocess.run([students / 'course', 'grade'], capture_output=True, text=True)
     assert run.returncode == 1
     assert "'grade' is for instructors" in run.stderr
@@ -74,7 +74,7 @@ def fresh(students, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.timeout(1800)
-def test_on_a_fresh_machine_lab_serves_the_lessons_and_the_tools_run(students, fresh, tmp_path):
+def test_lab_serves_the_lessons_and_the_tools_run_on_a_fresh_machine(students, fresh, tmp_path):
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))
         port = free.getsockname()[1]
@@ -122,7 +122,7 @@ def test_on_a_fresh_machine_lab_serves_the_lessons_and_the_tools_run(students, f
 
 
 def _fetched(address, server):
-    """What is served there, once it is."""
+    """Return what the server has at this address, once it answers."""
     while server.poll() is None:
         try:
             with urllib.request.urlopen(address, timeout=30) as answer:

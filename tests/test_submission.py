@@ -1,4 +1,4 @@
-"""Reading what strangers hand in: every oddity gets a sentence, nothing gets a traceback."""
+"""Reading submitted notebooks: every oddity is reported in a sentence, none by a traceback."""
 
 import contextlib
 import json
@@ -64,7 +64,7 @@ UNREADABLE = {
 
 
 @pytest.mark.parametrize('said', ['zh_CN', 3, ['zh_CN'], {'a': 1}, '', 'x' * 30, '../..', 'zh CN'])
-def test_of_the_metadata_only_the_name_of_a_language_is_kept(read, said):
+def test_only_a_valid_language_of_the_notebook_metadata_is_kept(read, said):
     ours = {'language': said, 'notes': ['forged'], 'title': 'forged'}
     kept = {'my_robot_basics': {'language': said}} if said == 'zh_CN' else {}
     text = notebook_text(CODE, metadata={'my_robot_basics': ours, 'more': 1})
@@ -72,7 +72,7 @@ def test_of_the_metadata_only_the_name_of_a_language_is_kept(read, said):
 
 
 @pytest.mark.parametrize(('content', 'reason'), UNREADABLE.values(), ids=UNREADABLE)
-def test_the_unreadable_is_refused_in_one_line_with_a_reason(read, content, reason):
+def test_an_unreadable_notebook_is_refused_in_one_line_with_a_reason(read, content, reason):
     with pytest.raises(UnreadableSubmission) as refused:
         read(content)
     sentence = str(refused.value)
@@ -104,7 +104,7 @@ CELLS = {
 
 
 @pytest.mark.parametrize(('cell', 'source'), CELLS.values(), ids=CELLS)
-def test_every_cell_becomes_a_plain_one(read, cell, source):
+def test_every_odd_cell_becomes_a_valid_one_without_metadata_or_outputs(read, cell, source):
     clean = read(notebook_text(cell))
     assert [c.source for c in clean.cells] == [source]
     assert clean.cells[0].metadata == {}
@@ -151,12 +151,12 @@ ATTACHMENTS = {
 
 
 @pytest.mark.parametrize(('attachments', 'kept'), ATTACHMENTS.values(), ids=ATTACHMENTS)
-def test_of_attachments_only_pictures_are_kept(read, attachments, kept):
+def test_only_pictures_are_kept_of_attachments(read, attachments, kept):
     cell = {'cell_type': 'markdown', 'source': 'x', 'attachments': attachments}
     assert read(notebook_text(cell)).cells[0].get('attachments') == kept
 
 
-def test_a_pictures_name_can_be_written_to_any_file(read):
+def test_the_name_of_a_picture_is_shortened_and_made_encodable(read):
     pictures = {'\ud800' + 'a' * 300: {'image/png': PIXEL}}
     cell = {'cell_type': 'markdown', 'source': 'x', 'attachments': pictures}
     clean = read(notebook_text(cell))
@@ -164,7 +164,7 @@ def test_a_pictures_name_can_be_written_to_any_file(read):
     nbformat.writes(clean).encode()
 
 
-def test_more_pictures_than_anybody_pastes_are_refused(read):
+def test_a_notebook_with_too_many_pictures_is_refused(read):
     pictures = {str(n): {'image/png': PIXEL} for n in range(MAX_PICTURES)}
     cell = {'cell_type': 'markdown', 'source': 'x', 'attachments': pictures}
     assert len(read(notebook_text(cell)).cells[0].attachments) == MAX_PICTURES
@@ -172,7 +172,7 @@ def test_more_pictures_than_anybody_pastes_are_refused(read):
         read(notebook_text(cell, cell))
 
 
-def test_nothing_of_a_notebook_is_parsed_in_this_process(read, monkeypatch):
+def test_a_submitted_notebook_is_parsed_in_another_process(read, monkeypatch):
     def parsed_here(path):
         raise AssertionError(path)
 
@@ -183,7 +183,7 @@ def test_nothing_of_a_notebook_is_parsed_in_this_process(read, monkeypatch):
 
 
 @pytest.mark.parametrize('content', ONE_MEGABYTE.values(), ids=ONE_MEGABYTE)
-def test_a_megabyte_of_anything_takes_little_processor_time_and_less_here(read, content):
+def test_reading_a_hostile_megabyte_takes_little_processor_time_of_the_grader(read, content):
     """By nbformat, which checks all of its schema, 30,000 outputs took 39 s and 1.4 GB."""
     began = time.process_time()
     with contextlib.suppress(UnreadableSubmission):
@@ -223,7 +223,9 @@ FORGED = {
 
 
 @pytest.mark.parametrize('said', FORGED.values(), ids=FORGED)
-def test_what_the_process_that_reads_says_is_checked(tmp_path, monkeypatch, said):
+def test_a_malformed_reply_of_the_parser_is_not_blamed_on_the_submission(
+    tmp_path, monkeypatch, said
+):
     monkeypatch.setattr(reading, 'parse', lambda *arguments, **options: said)
     with pytest.raises(CourseError, match='returned no notebook') as refused:
         read_notebook(tmp_path / NAME)
@@ -238,7 +240,7 @@ def test_a_huge_file_is_refused_by_its_size_without_reading_it(tmp_path):
         read_notebook(path)
 
 
-def test_a_missing_notebook_names_what_was_found(tmp_path):
+def test_the_reason_for_a_missing_notebook_names_the_files_found(tmp_path):
     (tmp_path / '作业.ipynb').write_text('{}')
     with pytest.raises(UnreadableSubmission, match=r'no file 03_publisher\.ipynb; found 作业'):
         read_notebook(tmp_path / NAME)
@@ -246,7 +248,7 @@ def test_a_missing_notebook_names_what_was_found(tmp_path):
         read_notebook(tmp_path / 'nowhere' / NAME)
 
 
-def test_a_link_or_a_folder_is_no_submission(tmp_path):
+def test_a_symbolic_link_or_a_folder_is_refused_as_a_notebook(tmp_path):
     (tmp_path / 'secret.ipynb').write_text(notebook_text(CODE))
     (tmp_path / NAME).symlink_to(tmp_path / 'secret.ipynb')
     (tmp_path / 'folder.ipynb').mkdir()
@@ -256,7 +258,7 @@ def test_a_link_or_a_folder_is_no_submission(tmp_path):
 
 
 @pytest.mark.parametrize('student', ['ada', '李雷', 'Ольга', 'o’brien', '🐢', 'a b'])
-def test_students_of_any_alphabet_hand_in(tmp_path, student):
+def test_a_student_name_in_any_alphabet_is_read(tmp_path, student):
     folder = tmp_path / student / '03_publisher'
     folder.mkdir(parents=True)
     nbformat.write(new_notebook(cells=[new_code_cell('x = 1')]), folder / NAME)
@@ -267,7 +269,7 @@ def test_students_of_any_alphabet_hand_in(tmp_path, student):
     assert [cell.source for cell in submission.notebook.cells] == ['x = 1']
 
 
-def test_what_is_wrong_with_a_submission_is_its_problem(tmp_path):
+def test_a_missing_notebook_is_recorded_as_the_submissions_problem(tmp_path):
     submission = read_submission(tmp_path, student_id='ada', assignment='03_publisher')
     assert submission.notebook is None
     assert 'there is no file 03_publisher.ipynb' in submission.problem
@@ -284,7 +286,7 @@ def test_only_plain_python_files_beside_the_notebook_are_extra(tmp_path):
     assert submission.extra_files == (tmp_path / 'a.py', tmp_path / 'b.py')
 
 
-def test_reading_changes_nothing(tmp_path):
+def test_reading_a_submission_changes_no_file(tmp_path):
     path = tmp_path / NAME
     path.write_text(notebook_text(CODE))
     before = (path.read_bytes(), path.stat().st_mtime_ns, sorted(tmp_path.iterdir()))
@@ -292,7 +294,7 @@ def test_reading_changes_nothing(tmp_path):
     assert (path.read_bytes(), path.stat().st_mtime_ns, sorted(tmp_path.iterdir())) == before
 
 
-def test_a_notebook_that_takes_all_memory_is_refused_and_takes_none_here(read):
+def test_a_notebook_of_millions_of_cells_is_refused_at_little_memory(read):
     """Read in this process, it took 7 GB."""
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     cells = ','.join(['{}'] * 6_000_000)
@@ -302,7 +304,7 @@ def test_a_notebook_that_takes_all_memory_is_refused_and_takes_none_here(read):
     assert kilobytes < 400_000  # of which this test itself takes some
 
 
-def test_many_or_large_modules_are_left_out_and_it_is_said(tmp_path):
+def test_modules_that_are_too_many_or_too_large_are_left_out_with_a_note(tmp_path):
     for name in ('a', 'b'):
         (tmp_path / f'{name}.py').write_text('x = 1')
     (tmp_path / 'large.py').write_bytes(b'#' * (MAX_PYTHON_BYTES + 1))
@@ -327,7 +329,7 @@ STRANGE = {
 
 @pytest.mark.parametrize('name', STRANGE)
 @pytest.mark.parametrize('size', [5, MAX_PYTHON_BYTES + 1])
-def test_a_module_whose_name_can_not_be_kept_is_left_out_and_it_is_said(tmp_path, name, size):
+def test_a_module_with_an_unusable_name_is_left_out_with_a_note(tmp_path, name, size):
     (tmp_path / 'a.py').touch()
     (tmp_path / os.fsdecode(name)).write_bytes(b'#' * size)
     submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
@@ -339,14 +341,14 @@ def test_a_module_whose_name_can_not_be_kept_is_left_out_and_it_is_said(tmp_path
     note.encode()
 
 
-def test_a_module_that_is_a_link_is_left_out_and_it_is_said(tmp_path):
+def test_a_module_that_is_a_symbolic_link_is_left_out_with_a_note(tmp_path):
     (tmp_path / 'a.py').touch()
     (tmp_path / 'b.py').symlink_to('a.py')
     submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
     assert submission.notes == ('the file `b.py` was left out: it is a link',)
 
 
-def test_of_many_modules_that_are_left_out_some_are_named(tmp_path):
+def test_ten_of_many_left_out_modules_are_named_and_the_rest_are_counted(tmp_path):
     for number in range(30):
         (tmp_path / f'{number}\u202e.py').touch()
     submission = read_submission(tmp_path, student_id='ada', assignment='02_joint_state')
