@@ -162,13 +162,13 @@ ORDINARY = {
     'test_kernel_exits::test_who_ends_it_while_a_check_asks_gets_a_zero_too': (
         r'forked-9|started-15'
     ),
-    'test_validate::test_a_cell_that_does_not_return_is_given_up_sooner_and_not_called_wrong': (
+    'test_validate::test_a_cell_that_does_not_return_is_given_up_and_not_called_wrong': (
         r'a cell'
     ),
-    'test_validate::test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be': (
+    'test_validate::test_a_damaged_notebook_is_validated_as_far_as_possible': (
         r'take_a_check_away-.*'
     ),
-    'test_validate::test_work_that_loses_points_is_promised_none': (
+    'test_validate::test_work_that_loses_points_is_not_promised_full_points': (
         r'a publisher without a stamp'
     ),
     'test_doctor_faults::test_a_publisher_out_of_reach': r'environment1-.*',
@@ -182,7 +182,9 @@ ORDINARY = {
     'test_ros2_notebook::test_an_interrupt_ends_a_cell_and_leaves_nothing_behind': (
         r'ros2 run .*'
     ),
-    'test_synthetic_class::test_what_is_varied_decides_nothing': r'0[34]_.*-pass-[a-h].*',
+    'test_synthetic_class::test_variations_of_a_sample_change_nothing_that_is_graded': (
+        r'0[34]_.*-pass-[a-h].*'
+    ),
 }
 
 

@@ -17,15 +17,15 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_a_file_counts_by_what_it_holds(folder):
+def test_a_submission_differs_if_the_content_of_a_file_differs(folder):
     before = contents(folder)
     assert list(before) == ['a.ipynb', 'package/src/b.py']
     (folder / 'package/src/b.py').write_text('another')
     assert contents(folder) != before
 
 
-def test_nothing_is_followed_or_waited_for(folder):
-    """A link to /proc/self/mem was read, and could not be: no grade for all the rest."""
+def test_symbolic_links_and_pipes_in_a_submission_are_ignored(folder):
+    """A link to /proc/self/mem could not be read, and no other submission was graded then."""
     before = contents(folder)
     (folder / 'memory.py').symlink_to('/proc/self/mem')
     (folder / 'elsewhere').symlink_to('/proc/self')
@@ -34,8 +34,8 @@ def test_nothing_is_followed_or_waited_for(folder):
     assert contents(folder) == before
 
 
-def test_an_earlier_one_is_read_once_and_again_where_it_has_changed(tmp_path, monkeypatch):
-    """All of them were read for each further one: frequent submissions delayed the others."""
+def test_an_earlier_submission_is_read_once_and_again_only_if_changed(tmp_path, monkeypatch):
+    """Reading all of them for each further submission delayed the other students."""
     for number in range(3):
         (tmp_path / f'{number}/submitted').mkdir(parents=True)
         (tmp_path / f'{number}/submitted/a.ipynb').write_text(f'{number}')
@@ -54,7 +54,7 @@ def test_an_earlier_one_is_read_once_and_again_where_it_has_changed(tmp_path, mo
 
 
 @pytest.mark.parametrize('limit', ['MAX_FILES', 'MAX_BYTES', 'MAX_DEPTH'])
-def test_of_what_is_too_much_nothing_is_read(folder, monkeypatch, limit):
+def test_a_submission_over_a_limit_is_refused_without_being_read(folder, monkeypatch, limit):
     monkeypatch.setattr(submission_folders, limit, 20 if limit == 'MAX_BYTES' else 1)
     monkeypatch.setattr(submission_folders, 'digests', None)
     with pytest.raises(TaskFailed, match='remove what is no part of the submission') as refused:
@@ -62,7 +62,7 @@ def test_of_what_is_too_much_nothing_is_read(folder, monkeypatch, limit):
     assert str(folder) in str(refused.value)
 
 
-def test_a_thousand_folders_in_each_other_are_too_much(tmp_path):
+def test_a_submission_of_a_thousand_nested_folders_is_refused(tmp_path):
     here = os.open('.', os.O_RDONLY)
     try:
         os.chdir(tmp_path)

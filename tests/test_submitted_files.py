@@ -1,4 +1,4 @@
-"""nbgrader's own commands parse nothing of what was handed in."""
+"""nbgrader's own commands do not parse submitted files themselves."""
 
 import time
 
@@ -27,7 +27,9 @@ def exporter_of(passes):
     'content', [*ONE_MEGABYTE.values(), '', '[' * 100_000, '{}'],
     ids=[*ONE_MEGABYTE, 'nothing', 'nested', 'no notebook'],
 )  # fmt: skip
-def test_a_submitted_notebook_is_left_to_the_process_that_reads_it(tmp_path, content, monkeypatch):
+def test_nbgrader_leaves_parsing_a_submitted_notebook_to_another_process(
+    tmp_path, content, monkeypatch
+):
     path = tmp_path / 'a.ipynb'
     path.write_text(content)
     monkeypatch.setattr(nbformat, 'read', None)
@@ -39,7 +41,7 @@ def test_a_submitted_notebook_is_left_to_the_process_that_reads_it(tmp_path, con
     assert time.process_time() - began < 1.0  # nbconvert's own: 39 s for the outputs
 
 
-def test_what_nbgrader_itself_has_written_is_read(tmp_path):
+def test_a_notebook_written_by_nbgrader_is_read_in_full(tmp_path):
     path = tmp_path / 'a.ipynb'
     nbformat.write(new_notebook(cells=[nbformat.v4.new_raw_cell('x')]), path)
     assert 'grader.autograde.preprocessors.ExecuteRooms' in AUTOGRADE_PASSES
@@ -56,7 +58,7 @@ def configured(tmp_path, monkeypatch):
     return course, PyFileConfigLoader('nbgrader_config.py', path=str(course.root)).load_config()
 
 
-def test_autograde_is_told_to_read_so(configured):
+def test_autograde_is_configured_with_our_exporter_and_timestamp_reader(configured):
     _, config = configured
     assert Autograde(config=config).exporter_class is AutogradeExporter
     assert CourseDirectory.get_existing_timestamp is existing_timestamp
@@ -73,7 +75,7 @@ def test_autograde_is_told_to_read_so(configured):
         (b'\xff' * 50, None),
     ],
 )
-def test_a_timestamp_is_read_as_in_our_own_commands(configured, text, when):
+def test_nbgrader_reads_a_timestamp_as_our_own_commands_do(configured, text, when):
     course, config = configured
     path = submit(course, 'ada', '').with_name('timestamp.txt')
     path.write_bytes(text if isinstance(text, bytes) else text.encode())

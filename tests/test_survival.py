@@ -44,7 +44,7 @@ def start():
 
 @pytest.fixture(scope='module')
 def handed_in(tmp_path_factory):
-    """A class that is not graded yet; one of it handed in more than a notebook."""
+    """A class that is not graded yet; one student handed in more than a notebook."""
     course = released_course(tmp_path_factory.mktemp('survival'))
     for student, answer in (('ada', RIGHT), ('bob', WRONG), ('zoe', RIGHT)):
         notebook = submit(course, student, answered(course, answer.format(student)))
@@ -74,7 +74,7 @@ def fresh(handed_in, gradebook):
 
 
 def stored(course):
-    """Return all that the gradebook holds. Where a run began to store, it goes on first."""
+    """Return all that the gradebook holds, after storing what a run began to store."""
     rows = records(course)
     with closing(sqlite3.connect(course.database)) as database:
         assert database.execute('PRAGMA integrity_check').fetchone() == ('ok',)
@@ -92,7 +92,7 @@ def done(course):
 
 
 def in_database(course):
-    """Return each student's scores as any program finds them, were it in the midst of a run."""
+    """Return each student's scores as another program finds them, even during a run."""
     found = defaultdict(set)
     if course.database.exists():
         with closing(sqlite3.connect(course.database)) as database:
@@ -102,7 +102,7 @@ def in_database(course):
 
 
 def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
-    """Grade, and be killed so many times, at random moments of each part; each time go on."""
+    """Grade with so many kills at random moments of each part, and go on after each."""
     whole, wanted, calls = uninterrupted
     course, chance = fresh(handed_in, folder / 'gradebook'), random.Random(5)
     while kills:
@@ -112,7 +112,7 @@ def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
         assert not judged & before
         for student, grades in in_database(course).items():
             assert grades == wanted[student]
-        if code == 0:  # so much was done before that this run ended sooner
+        if code == 0:  # earlier runs had done so much that it ended before the kill
             assert stored(course) == whole
             course = fresh(handed_in, folder / 'gradebook')
         else:
@@ -126,7 +126,7 @@ def grade_with_kills(handed_in, uninterrupted, start, folder, *, kills):
 
 
 @pytest.mark.slow
-def test_a_run_killed_at_any_moment_goes_on_and_ends_as_if_nothing_had_been(
+def test_a_run_killed_five_times_ends_with_the_results_of_an_undisturbed_run(
     handed_in, uninterrupted, start, tmp_path
 ):
     grade_with_kills(handed_in, uninterrupted, start, tmp_path, kills=5)
@@ -134,5 +134,7 @@ def test_a_run_killed_at_any_moment_goes_on_and_ends_as_if_nothing_had_been(
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
-def test_fifty_kills_change_nothing(handed_in, uninterrupted, start, tmp_path):
+def test_a_run_killed_fifty_times_ends_with_the_results_of_an_undisturbed_run(
+    handed_in, uninterrupted, start, tmp_path
+):
     grade_with_kills(handed_in, uninterrupted, start, tmp_path, kills=50)

@@ -1,4 +1,4 @@
-"""The synthetic class: as large as asked for, always the same, and of known worth."""
+"""The synthetic class: of any size, always the same, and with known scores."""
 
 import ast
 from collections import Counter
@@ -44,7 +44,7 @@ def test_assignments_come_in_turn_and_most_answers_are_right(papers):
     assert 40 < sum('-pass-' in paper.sample for paper in papers) < 60
 
 
-def test_every_sample_has_its_turn_before_one_comes_again():
+def test_every_sample_is_used_once_before_one_is_repeated():
     samples = {name for name in PATHS if assignment_of(PATHS[name]) == '06_qos'}
     came = [paper.sample for paper in synthetic_class(8 * len(samples), assignments=['06_qos'])]
     for pile in ({s for s in samples if '-pass-' in s}, {s for s in samples if '-pass-' not in s}):
@@ -52,14 +52,14 @@ def test_every_sample_has_its_turn_before_one_comes_again():
         assert sorted(first) == sorted(pile)
 
 
-def test_samples_can_be_chosen():
+def test_a_class_can_be_made_of_chosen_samples():
     chosen = ('02_joint_state-pass-numpy', '03_publisher-fail-1hz')
     assert {paper.sample for paper in synthetic_class(9, samples=chosen)} == set(chosen)
 
 
 @pytest.mark.parametrize('name', PATHS)
-def test_what_is_varied_decides_nothing(name):
-    """All that is graded is as in the sample; what is added are remarks, and prints of texts."""
+def test_variations_of_a_sample_change_nothing_that_is_graded(name):
+    """All that is graded is as in the sample; only remarks and prints of texts are added."""
     [paper] = synthetic_class(1, samples=[name])
     if name == '03_publisher-zero-not_json':
         assert paper.text == PATHS[name].read_text(encoding='utf-8')

@@ -43,7 +43,7 @@ def do(text):
     return asyncio.run(run_packed(text))
 
 
-def test_it_goes_as_text_and_comes_back_the_same(work, looked, monkeypatch):
+def test_a_grading_task_and_its_result_survive_packing_as_text(work, looked, monkeypatch):
     times = iter((100.0, 107.5))
     monkeypatch.setattr(task, 'time', SimpleNamespace(monotonic=lambda: next(times)))
     text = pack(work)
@@ -69,14 +69,14 @@ def graded_lesson(work, reasons):
     return notebook
 
 
-def test_doing_it_does_not_change_it(work, looked):
+def test_running_a_packed_task_does_not_change_the_task(work, looked):
     text = pack(work)
     assert do(text) != text
     assert pack(work) == text
 
 
 @pytest.mark.parametrize('path', ['../../up.py', '/up.py', 'a/../../up.py'])
-def test_no_file_leaves_its_folder(work, looked, path):
+def test_a_file_path_that_leaves_its_folder_is_refused(work, looked, path):
     sent = json.loads(pack(work))
     sent['files'] = {path: ''}
     with pytest.raises(TaskFailed, match='is not the path of a file in a submission'):
@@ -84,7 +84,7 @@ def test_no_file_leaves_its_folder(work, looked, path):
     assert looked == {}
 
 
-def test_what_takes_too_long_is_given_up(work, monkeypatch):
+def test_a_task_that_takes_too_long_is_given_up(work, monkeypatch):
     async def endless(notebook, **_):
         await asyncio.Event().wait()
 
@@ -94,7 +94,7 @@ def test_what_takes_too_long_is_given_up(work, monkeypatch):
         unpack(do(pack(work)), work)
 
 
-def test_whatever_fails_is_an_answer_too(work):
+def test_a_failure_of_a_task_is_returned_with_its_traceback(work):
     with pytest.raises(TaskFailed, match='JSONDecodeError') as failed:
         unpack(do('{'), work)
     assert 'Traceback' in failed.value.trace
@@ -144,13 +144,13 @@ def fewer_cells(work):
         (fewer_cells, 'returned another notebook'),
     ],
 )
-def test_what_is_no_result_of_it_is_refused(work, answer, why):
+def test_a_result_that_does_not_belong_to_the_task_is_refused(work, answer, why):
     assert unpack(json.dumps(result(work)), work).seconds == 1.0
     with pytest.raises(TaskFailed, match=f'the worker {why}'):
         unpack(json.dumps(answer(work)), work)
 
 
 @pytest.mark.parametrize('text', ['', '{', '[' * 100_000, 'NaN'])
-def test_what_is_no_json_is_refused(work, text):
+def test_a_result_that_is_not_json_is_refused(work, text):
     with pytest.raises(TaskFailed, match='the worker did not return a result'):
         unpack(text, work)

@@ -1,4 +1,4 @@
-"""The temporary folders of graders: gone with their process, or with the next one's start."""
+"""Temporary folders of graders are removed when their process ends, or the next one starts."""
 
 import os
 import shutil
@@ -53,7 +53,7 @@ def tmp_path():
         yield Path(folder)
 
 
-def test_what_a_killed_grader_left_goes_with_the_next_ones_start(tmp_path, start):
+def test_folders_of_a_killed_grader_are_removed_when_the_next_one_starts(tmp_path, start):
     (killed, left), (other, others) = start(), start()
     killed.kill()
     killed.wait()
@@ -65,7 +65,7 @@ def test_what_a_killed_grader_left_goes_with_the_next_ones_start(tmp_path, start
     assert list(tmp_path.iterdir()) == [new]
 
 
-def test_a_process_has_one_folder_that_nobody_else_enters():
+def test_a_process_has_one_folder_that_no_other_user_can_enter():
     folder = make_folder('student')
     other = make_folder('test')
     assert folder.parent == other.parent == own_folder()
@@ -77,12 +77,12 @@ def test_a_process_has_one_folder_that_nobody_else_enters():
         shutil.rmtree(each)
 
 
-def test_a_long_path_is_left_for_a_short_one(monkeypatch):
+def test_a_long_temporary_path_is_replaced_by_one_in_tmp(monkeypatch):
     monkeypatch.setattr(temporary_folders.tempfile, 'gettempdir', lambda: '/' + 'x' * 60)
     assert own_folder().parent == Path('/tmp')
 
 
-def test_no_link_is_followed_and_nothing_else_is_touched(tmp_path, monkeypatch):
+def test_sweeping_follows_no_links_and_removes_only_abandoned_folders(tmp_path, monkeypatch):
     precious = tmp_path / 'precious'
     precious.mkdir()
     (precious / 'kept.txt').write_text('')
@@ -101,7 +101,7 @@ def test_no_link_is_followed_and_nothing_else_is_touched(tmp_path, monkeypatch):
     assert (precious / 'kept.txt').exists()
 
 
-def test_a_copy_of_a_process_removes_nothing(tmp_path, start):
+def test_a_forked_process_does_not_remove_the_folder_of_its_parent(tmp_path, start):
     folder = own_folder()
     child = os.fork()
     if child == 0:

@@ -15,18 +15,18 @@ each_row = pytest.mark.parametrize(
 )
 
 
-def test_every_line_of_a_table_is_a_row():
+def test_every_line_of_the_tables_of_terms_is_parsed_as_a_row():
     lines = [line for line in PAGE.splitlines() if line.startswith('|')]
     titles = [line for line in lines if line.startswith(('| term |', '|---'))]
     assert len(ROWS) == len(lines) - len(titles)
 
 
-def test_no_term_comes_twice():
+def test_no_term_is_listed_twice():
     terms = [term.lower() for term, *_ in ROWS]
     assert sorted(set(terms)) == sorted(terms)
 
 
-def test_the_terms_of_the_course_are_there():
+def test_the_core_terms_of_the_course_are_listed():
     core = {'node', 'topic', 'message', 'publisher', 'subscription', 'callback', 'executor'}
     core |= {'spin', 'QoS', 'RELIABLE', 'BEST_EFFORT', 'VOLATILE', 'TRANSIENT_LOCAL', 'depth'}
     core |= {'domain ID', 'frame', 'stamp', 'entry point', 'package', 'workspace'}
@@ -34,7 +34,7 @@ def test_the_terms_of_the_course_are_there():
 
 
 @each_row
-def test_a_term_is_told_in_one_sentence(term, meaning, number, link):
+def test_a_term_is_explained_in_one_sentence(term, meaning, number, link):
     assert re.fullmatch(r'[A-Z][^.!?]*(?:`[^`]+`[^.!?]*)*\.', meaning)
     assert len(meaning.split()) <= 30
 
@@ -48,7 +48,7 @@ def test_a_term_is_used_in_the_lesson_that_it_names(term, meaning, number, link)
 
 
 @each_row
-def test_the_lesson_leads_to_the_term_where_it_is_first_explained(term, meaning, number, link):
+def test_the_lesson_that_explains_a_term_links_to_the_page_of_terms(term, meaning, number, link):
     lesson = nbformat.read(ROOT / 'solutions' / link, as_version=4)
     text = '\n'.join(cell.source for cell in lesson.cells if cell.cell_type == 'markdown')
     linked = re.findall(r'\[([^\]]+)\]\(\.\./terms\.md\)', text)
@@ -56,10 +56,10 @@ def test_the_lesson_leads_to_the_term_where_it_is_first_explained(term, meaning,
 
 
 @pytest.mark.parametrize('link', sorted(LINKS))
-def test_its_links_lead_somewhere(link):
+def test_links_of_the_page_of_terms_lead_to_files(link):
     assert (ROOT / 'notebooks' / link).is_file()
 
 
-def test_lessons_lead_to_it():
+def test_the_first_lesson_links_to_the_page_of_terms():
     first = nbformat.read(next(ROOT.glob('solutions/00_*/*.ipynb')), as_version=4)
     assert '](../terms.md)' in first.cells[-1].source

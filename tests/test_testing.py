@@ -1,4 +1,4 @@
-"""`./course test`: what it runs, and what it makes of a test that passes only alone."""
+"""`./course test`: the commands that it runs, and how it treats tests that pass only alone."""
 
 import os
 import subprocess
@@ -30,19 +30,19 @@ def report(path, **cases):
     return path
 
 
-def test_what_failed_and_then_passed_is_unstable(tmp_path):
+def test_a_test_that_failed_and_then_passed_is_unstable(tmp_path):
     failures = read_failures(report(tmp_path / '1', a='late\nby 2 s', b='wrong', c='late', d=''))
     assert failures == {'f::a': 'late by 2 s', 'f::b': 'wrong', 'f::c': 'late'}
     passes = read_passes(report(tmp_path / '2', a='', b='wrong'))
     assert unstable(failures, passes) == {'f::a': 'late by 2 s'}
 
 
-def test_no_report_is_no_test(tmp_path):
+def test_a_missing_report_holds_no_tests(tmp_path):
     assert read_failures(tmp_path / 'none') == {}
     assert read_passes(tmp_path / 'none') == set()
 
 
-def test_the_record_counts_those_of_all_runs(tmp_path):
+def test_the_record_counts_unstable_tests_of_all_runs(tmp_path):
     record = tmp_path / 'unstable_tests.txt'
     assert add_unstable(record, {'f::a': 'late'}) == 1
     assert add_unstable(record, {'f::a': 'late', 'f::b': 'late'}) == 3
@@ -110,7 +110,7 @@ def test_a_file_that_cannot_be_imported_is_named_and_not_run_again(source, why, 
 
 
 @pytest.mark.starts
-def test_a_mistake_in_an_argument_of_pytest_ends_all_of_it_at_once(tmp_path, monkeypatch):
+def test_a_wrong_pytest_argument_ends_the_run_at_once(tmp_path, monkeypatch):
     types = f'sleep 10; touch {tmp_path}/waited-for'
     for name, does in {'ruff': 'exit 0', 'mypy': types, 'python': 'exit 4'}.items():
         program = tmp_path / '.venv/bin' / name
@@ -122,7 +122,7 @@ def test_a_mistake_in_an_argument_of_pytest_ends_all_of_it_at_once(tmp_path, mon
 
 
 @pytest.mark.starts
-def test_who_asks_for_help_gets_that_of_pytest_alone(tmp_path, capfd):
+def test_the_option_help_prints_the_help_of_pytest_alone(tmp_path, capfd):
     python = tmp_path / '.venv/bin/python'
     python.parent.mkdir(parents=True)
     python.write_text('#!/bin/sh\necho "$@"\n')
@@ -135,16 +135,14 @@ def test_who_asks_for_help_gets_that_of_pytest_alone(tmp_path, capfd):
 @pytest.mark.parametrize(
     ('command', 'has_one'), [(('env',), True), (('false',), False), (('no-such-program',), False)]
 )
-def test_without_a_network_of_their_own_the_lessons_come_after_the_tests(
-    monkeypatch, command, has_one
-):
+def test_an_own_network_is_available_only_if_its_command_succeeds(monkeypatch, command, has_one):
     monkeypatch.setattr(testing, 'OWN_NETWORK', command)
     assert testing.has_own_network() == has_one
 
 
 @pytest.mark.starts
 @pytest.mark.isolation
-def test_the_lessons_are_in_a_network_of_their_own():
+def test_a_command_in_its_own_network_shares_no_network_and_no_memory():
     seen = subprocess.run(
         [*testing.OWN_NETWORK, 'sh', '-c', 'readlink /proc/self/ns/net; ls -A /dev/shm'],
         capture_output=True,

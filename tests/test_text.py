@@ -27,7 +27,7 @@ from grader.common.text import (
         ('\udcff', '\\udcff'),
     ],
 )
-def test_what_is_printed_moves_no_cursor(text, shown):
+def test_printable_text_spells_out_control_characters(text, shown):
     assert printable(text) == shown
 
 
@@ -35,7 +35,7 @@ def test_what_is_printed_moves_no_cursor(text, shown):
     ('text', 'width', 'shown'),
     [('abc', 3, 'abc'), ('abcd', 3, 'ab…'), ('小明小', 5, '小明…'), ('小明小', 6, '小明小')],
 )
-def test_lines_are_cut_by_columns(text, width, shown):
+def test_lines_are_shortened_by_terminal_columns(text, width, shown):
     assert shorten(text, width) == shown
     assert columns(pad(shown, 10)) == 10
 
@@ -74,7 +74,7 @@ HONEST = [
 
 
 @pytest.mark.parametrize('text', HONEST)
-def test_words_of_any_language_and_emoji_stay(text):
+def test_words_of_any_language_and_emoji_stay_unchanged(text):
     assert visible(text) == text
     assert printable(f'saw {text}') == f'saw {text}'
 
@@ -89,13 +89,13 @@ UNSEEN = [
 
 @pytest.mark.parametrize('character', UNSEEN)
 @pytest.mark.parametrize('around', ['x', '明', 'م'])
-def test_what_shows_nothing_is_spelled_out(character, around):
+def test_invisible_characters_are_spelled_out(character, around):
     spelled = character.encode('unicode_escape').decode()
     assert visible(f'{around}{character}{around}') == f'{around}{spelled}{around}'
 
 
 @pytest.mark.parametrize('text', ['a\u200db', 'a\u200c', '\u200d🔬', 'a\ufe0f', '❤\ufe0f\ufe0e'])
-def test_joiners_and_selectors_stay_only_where_they_change_a_look(text):
+def test_joiners_and_selectors_stay_only_where_they_change_the_glyph(text):
     assert visible(text).count('\\u') == 1
 
 
@@ -104,17 +104,17 @@ def test_lines_and_tabs_stay_in_text_of_several_lines():
 
 
 @pytest.mark.parametrize('formula', ['=1+1', '+1', '-1', '@SUM(A1)', '\t=1', '\r=1', '＝1'])
-def test_no_field_is_a_formula(formula):
+def test_a_spreadsheet_field_that_starts_a_formula_is_quoted(formula):
     assert spreadsheet_safe(formula)[0] == "'"
 
 
-def test_other_fields_stay_as_they_are():
+def test_a_spreadsheet_field_that_starts_no_formula_is_unchanged():
     assert spreadsheet_safe('expected 5, saw = 4') == 'expected 5, saw = 4'
 
 
 @pytest.mark.parametrize('mark', ['=', '+', '-', '@', '＝', '＋', '－', '＠'])
 @pytest.mark.parametrize('between', [';', ',', '|', '\t', '\r', '\n', '; ', ';"', ';""', ', " '])
-def test_no_part_of_a_field_is_a_formula_where_a_spreadsheet_may_split_it(mark, between):
+def test_no_part_of_a_field_becomes_a_formula_if_a_spreadsheet_splits_it(mark, between):
     """In much of Europe a spreadsheet splits at semicolons, and quotes only count at a start."""
     said = f'saw x{between}{mark}HYPERLINK("http://example.org")'
     safe = spreadsheet_safe(said)
@@ -130,11 +130,11 @@ def test_sentences_and_lists_of_numbers_stay_as_they_are(text):
     assert spreadsheet_safe(text) == text
 
 
-def test_a_number_that_goes_on_is_a_formula():
+def test_a_number_followed_by_an_expression_is_quoted_as_a_formula():
     assert spreadsheet_safe('saw x, -2+cmd()') == "saw x, '-2+cmd()"
 
 
-def test_a_spreadsheet_takes_a_table_for_what_it_is():
+def test_a_table_is_written_as_safe_csv_with_a_byte_order_mark():
     rows = [['name', 'score'], ['王小明', 1.5], ['=1', -2], ['a;=1', '']]
     table = spreadsheet_table(rows).encode()
     assert table.startswith(b'\xef\xbb\xbf')

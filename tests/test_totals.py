@@ -39,13 +39,13 @@ def test_each_student_has_a_score_for_each_assignment_and_a_total():
     assert (bob.scores, bob.total, bob.waiting) == ((None, 0.0), 0.0, 0)
 
 
-def test_a_sum_of_tenths_is_in_tenths():
+def test_a_sum_of_tenths_has_no_rounding_error():
     tenths = [cell('ada', '00_arm', score, 1.0, name=str(score)) for score in (0.7, 0.1, 0.1)]
     totals = add_up([*tenths, cell('ada', '01_topics', 0.3, 1.0)])
     assert (totals.students[0].scores, totals.students[0].total) == ((0.9, 0.3), 1.2)
 
 
-def test_the_table_tells_nothing_handed_in_from_nothing_earned_and_starts_no_formula():
+def test_the_table_of_totals_leaves_missing_submissions_empty_and_has_no_formula():
     rows = list(csv.reader(as_csv(add_up(CLASS)).lstrip('\ufeff').splitlines()))
     assert rows == [
         ['student_id', '00_arm (of 3)', '01_topics (of 2)', 'total (of 5)', 'waiting'],
@@ -83,7 +83,7 @@ def heads_of(course):
     return next(csv.reader(path.read_text(encoding='utf-8-sig').splitlines()))[1:-1]
 
 
-def test_a_lesson_that_is_withdrawn_counts_only_where_somebody_has_a_score(course, capsys):
+def test_a_withdrawn_lesson_counts_only_if_a_student_has_a_score_in_it(course, capsys):
     grade(course, 'ada', {})
     add_lesson(course, '01_more')
     assert heads_of(course) == [f'{TOY} (of 5)', '01_more (of 5)', 'total (of 10)']

@@ -35,7 +35,7 @@ def texts(course):
         yield (course.root / 'solutions' / page).read_text(encoding='utf-8')
 
 
-def test_blocks_and_what_is_between_them_are_the_text_again():
+def test_blocks_and_the_gaps_between_them_add_up_to_the_text():
     whole = list(texts(Course()))
     assert len(whole) > 100
     for text in whole:
@@ -45,7 +45,7 @@ def test_blocks_and_what_is_between_them_are_the_text_again():
         assert all(block.strip() and not block.endswith('\n') for block in pieces[1::2])
 
 
-def test_a_block_ends_at_a_blank_line_and_each_row_of_a_table_is_one():
+def test_a_block_ends_at_a_blank_line_and_each_table_row_is_a_block():
     text = 'One\ntwo.\n\n| a | b |\n|---|---|\n| `c` | 3 |\nnext\n\n```\nx\n\ny\n```\nend\n'
     assert split_blocks(text)[1::2] == [
         *('One\ntwo.', '| a | b |', '|---|---|', '| `c` | 3 |', 'next', '```\nx\n\ny\n```\nend'),
@@ -135,7 +135,7 @@ def of_the_toy(reports):
     return report
 
 
-def test_what_is_translated_is_read_back(course):
+def test_translations_in_a_catalogue_are_read_back(course):
     locale = course.root / 'locale'
     assert languages(locale) == ['zh_CN']
     assert read_translations(locale, 'zh_CN', TOY) == CHINESE
@@ -178,7 +178,7 @@ def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
     assert 'out of date: title: You double numbers. There are three ways.' in said
 
 
-def test_the_english_before_goes_with_the_mark_of_one_that_was_looked_at(course):
+def test_the_former_english_text_is_removed_with_the_mark_fuzzy(course):
     write_opening(course, OPENING.replace('two ways', 'three ways'))
     update(course)
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
@@ -189,7 +189,7 @@ def test_the_english_before_goes_with_the_mark_of_one_that_was_looked_at(course)
     assert 'two ways' not in path.read_text(encoding='utf-8')
 
 
-def test_before_any_update_the_edited_block_is_english_and_nothing_else_changes(course):
+def test_only_the_edited_block_is_english_before_the_catalogue_is_updated(course):
     (edition,) = editions(course)
     edited = OPENING.replace('two ways', 'three ways')
     before, after = edition.text(TOY, OPENING), edition.text(TOY, edited)
@@ -203,7 +203,7 @@ def test_before_any_update_the_edited_block_is_english_and_nothing_else_changes(
     ]
 
 
-def test_a_block_that_is_gone_leaves_the_catalogue(course):
+def test_a_deleted_block_is_removed_from_the_catalogue(course):
     write_opening(course, OPENING.replace('You double numbers. There are two ways.\n\n', ''))
     assert of_the_toy(update(course)).texts == 3
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
@@ -220,13 +220,13 @@ def test_a_damaged_catalogue_is_named(course):
         edition.translations(TOY)
 
 
-def test_a_catalogue_of_no_part_is_named(course):
+def test_a_catalogue_that_belongs_to_no_lesson_is_named(course):
     catalogue_path(course.root / 'locale', 'zh_CN', 'gone').write_text('', encoding='utf-8')
     with pytest.raises(CourseError, match=r'gone\.po belongs to no lesson'):
         update(course)
 
 
-def test_a_sentence_for_one_and_one_for_many_are_both_whole():
+def test_sentences_for_one_and_for_many_do_not_differ_by_an_inserted_verb():
     """Chinese has one word for both: an entry for each verb would be listed as missing."""
     parts = parts_of(Course())
     texts = {text for part in MODULES for text in parts[part]}
@@ -234,7 +234,7 @@ def test_a_sentence_for_one_and_one_for_many_are_both_whole():
     assert [pair for pair in forms if set(pair.split()) <= texts] == []
 
 
-def test_what_only_instructors_read_is_not_translated():
+def test_texts_that_only_instructors_read_are_not_translated():
     parts = parts_of(Course())
     everything = '\n'.join(text for part in parts.values() for text in part)
     assert 'MARK SCHEME' not in everything
@@ -283,7 +283,7 @@ def test_a_good_translation_has_no_fault(english, chinese):
     assert list(faults_of(english, chinese)) == []
 
 
-def test_a_term_that_is_not_the_glossarys_is_found():
+def test_a_term_translated_against_the_glossary_is_found():
     glossary = {'topic': ['话题'], 'end effector': ['末端执行器', '末端']}
     assert list(unknown_terms('Two topics.', '两个主题。', glossary)) == ['topic: expected 话题']
     assert list(unknown_terms('The `topic`; an end effector.', '末端。', glossary)) == []
@@ -298,7 +298,7 @@ TRANSLATED = [
 
 
 WHOLE = ('zh_CN',)
-"""The editions that lack nothing; one that somebody has begun may lack what it likes."""
+"""Editions that must be complete; one that was just begun need not be."""
 
 
 @pytest.fixture(scope='module')
@@ -313,8 +313,8 @@ def updated(tmp_path_factory):
 
 
 @pytest.mark.timeout(120)
-def test_the_catalogues_are_those_of_the_english(updated):
-    """Each edit of an English text is followed by `./course translate`."""
+def test_the_catalogues_are_up_to_date_with_the_english_texts(updated):
+    """After each edit of an English text, `./course translate` has to be run."""
     root, _ = updated
     made = {path.relative_to(root) for path in root.glob('locale/**/*.po')}
     kept = {path.relative_to(ROOT) for path in ROOT.glob('locale/**/*.po')}
@@ -325,7 +325,7 @@ def test_the_catalogues_are_those_of_the_english(updated):
 
 
 @pytest.mark.timeout(120)
-def test_a_whole_edition_lacks_no_text(updated):
+def test_a_complete_edition_has_no_missing_or_outdated_translation(updated):
     """A new lesson whose catalogue nobody has filled is released in English, without an error."""
     reports = [each for each in updated[1] if each.language in WHOLE]
     assert {each.language for each in reports} == {*WHOLE}
@@ -338,7 +338,7 @@ def test_a_whole_edition_lacks_no_text(updated):
 
 
 @pytest.mark.parametrize('language', WHOLE)
-def test_each_lesson_has_its_notebook_in_a_whole_edition(language):
+def test_each_lesson_has_its_notebook_in_a_complete_edition(language):
     names = Course().assignments()
     assert len(names) > 10
     released = ROOT / 'notebooks' / language
@@ -346,7 +346,7 @@ def test_each_lesson_has_its_notebook_in_a_whole_edition(language):
 
 
 @pytest.mark.parametrize(('language', 'part'), TRANSLATED)
-def test_translations_keep_what_has_to_be_kept(language, part):
+def test_translations_of_the_course_have_no_faults(language, part):
     assert {
         english: faults
         for english, text in read_translations(ROOT / 'locale', language, part).items()
@@ -355,8 +355,8 @@ def test_translations_keep_what_has_to_be_kept(language, part):
 
 
 @pytest.mark.parametrize(('language', 'part'), TRANSLATED)
-def test_no_two_places_of_a_sentence_touch(language, part):
-    """The end of the text in the first place is unclear: write a whole sentence for each case."""
+def test_no_two_placeholders_of_a_sentence_are_adjacent(language, part):
+    """It would be unclear where the first text ends: write a whole sentence for each case."""
     if part in PARTS:
         known = read_translations(ROOT / 'locale', language, part)
         assert [english for english in known if '}{' in english] == []

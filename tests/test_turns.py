@@ -1,4 +1,4 @@
-"""Whose submission is graded next."""
+"""The order in which waiting submissions are graded."""
 
 import pytest
 
@@ -21,19 +21,19 @@ def turn(waiting, *, busy=(), starts=None, rules=NO_RULES):
     return found and found.number
 
 
-def test_the_newest_of_a_student_comes_first_and_replaces_those_before_it():
+def test_the_newest_submission_of_a_student_comes_first_and_replaces_earlier_ones():
     waiting = [arrival(1, 'ada'), arrival(2, 'ada', 'b'), arrival(3, 'ada')]
     assert turn(waiting) == 3
     assert [each.number for each in replaced_by(waiting[2], waiting)] == [1]
 
 
-def test_one_of_a_student_s_is_graded_at_a_time():
+def test_one_submission_of_a_student_is_graded_at_a_time():
     waiting = [arrival(1, 'ada'), arrival(2, 'bob')]
     assert turn(waiting, busy={'ada'}) == 2
     assert turn(waiting, busy={'ada', 'bob'}) is None
 
 
-def test_who_hands_in_twenty_lessons_waits_for_who_hands_in_one():
+def test_a_student_with_twenty_submissions_waits_for_one_with_a_single_submission():
     waiting = [
         *(arrival(number, 'ada', f'{number}') for number in range(1, 21)),
         arrival(30, 'bob'),
@@ -48,7 +48,7 @@ def test_who_hands_in_twenty_lessons_waits_for_who_hands_in_one():
     assert served == ['ada', 'bob', 'ada']
 
 
-def test_what_is_over_a_limit_waits_and_another_lesson_does_not():
+def test_a_lesson_over_its_hourly_limit_waits_and_another_lesson_does_not():
     rules = ResubmissionRules(per_hour=2)
     waiting = [arrival(1, 'ada', 'b'), arrival(2, 'ada', 'a')]
     starts = {('ada', 'a'): [NOW - 100, NOW - 50]}
@@ -57,7 +57,7 @@ def test_what_is_over_a_limit_waits_and_another_lesson_does_not():
     assert why_it_waits([NOW - 3_700, NOW - 50], rules, NOW) == ''
 
 
-def test_what_is_over_the_total_is_kept():
+def test_a_submission_over_the_total_limit_is_kept_but_not_graded():
     rules = ResubmissionRules(in_total=2)
     assert why_it_waits([1.0], rules, NOW) == ''
     assert why_it_waits([1.0, 2.0], rules, NOW).endswith('it is kept, but not graded')
@@ -67,7 +67,7 @@ def read(text):
     return read_deadlines(f'[resubmissions]\n{text}'.encode(), 'deadlines.toml').resubmissions
 
 
-def test_the_rules_are_read():
+def test_resubmission_rules_are_read():
     assert read('per_hour = 6\nin_total = 30\nhidden_inputs = "anew"') == ResubmissionRules(
         6, 30, 'anew'
     )
@@ -77,6 +77,6 @@ def test_the_rules_are_read():
 @pytest.mark.parametrize(
     'text', ['per_hour = 0', 'in_total = true', 'in_total = 1.5', 'hidden_inputs = "new"', 'x = 1']
 )
-def test_rules_that_say_something_else_are_refused(text):
+def test_invalid_resubmission_rules_are_refused(text):
     with pytest.raises(CourseError, match=text.split()[0]):
         read(text)

@@ -88,7 +88,7 @@ def rooms(worker):
     return names.count('bwrap')
 
 
-def test_a_host_that_is_lost_in_the_middle_changes_no_score(
+def test_a_host_that_is_lost_during_grading_changes_no_score(
     tmp_path, hosts, start, scheduler, ours
 ):
     workers = {host: start_worker(start, hosts, host, scheduler, ours) for host in (HERE, THERE)}
@@ -119,7 +119,7 @@ def test_a_host_that_is_lost_in_the_middle_changes_no_score(
     assert len({student for student, *_ in scores(there)}) == number
 
 
-def test_nobody_takes_part_without_tls_or_with_a_certificate_of_another_authority(
+def test_a_host_without_tls_or_with_a_foreign_certificate_is_refused(
     tmp_path, hosts, start, scheduler, ours
 ):
     course = handed_in(tmp_path / 'course')
@@ -139,7 +139,7 @@ def test_nobody_takes_part_without_tls_or_with_a_certificate_of_another_authorit
     mixed = [
         *ours.options('course')[:2],
         *theirs.options('course')[2:],
-    ]  # it does not know us
+    ]  # the scheduler does not know us
     assert f'no scheduler at {scheduler.address} that answers' in refused(
         scheduler.address, *mixed
     )

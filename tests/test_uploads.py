@@ -35,29 +35,29 @@ def seen(source, tmp_path):
     return {each.path: each.problem or (each.file and each.file.read_bytes()) for each in found}
 
 
-def test_a_folder_is_read_as_it_lies_there(source, tmp_path):
+def test_files_of_an_uploaded_folder_are_read_and_copied(source, tmp_path):
     (source / 'ada').mkdir()
     (source / 'ada/a.ipynb').write_text('x')
     (source / 'b.py').write_text('y')
     assert seen(source, tmp_path) == {'ada/a.ipynb': b'x', 'b.py': b'y'}
     copies = [each.read_text() for each in (tmp_path / 'aside').iterdir()]
-    assert sorted(copies) == ['x', 'y']  # nobody can change what was read
+    assert sorted(copies) == ['x', 'y']  # nobody can change these copies
 
 
-def test_one_notebook_is_a_folder_of_one(source, tmp_path):
+def test_a_single_notebook_is_read_as_an_upload_of_one_file(source, tmp_path):
     (source / 'ada_a.ipynb').write_text('x')
     assert seen(source / 'ada_a.ipynb', tmp_path) == {'ada_a.ipynb': b'x'}
 
 
 @pytest.mark.parametrize('name', ['nowhere', 'notes.txt', 'class.rar'])
-def test_another_kind_of_thing_is_refused_in_a_sentence(name, source, tmp_path):
+def test_an_upload_of_another_kind_is_refused_in_a_sentence(name, source, tmp_path):
     if name != 'nowhere':
         (source / name).touch()
     with pytest.raises(CourseError, match='expected a folder, a notebook or an archive'):
         seen(source / name, tmp_path)
 
 
-def test_archives_in_archives_are_opened_and_told_as_folders(source, tmp_path):
+def test_archives_in_archives_are_unpacked_and_named_like_folders(source, tmp_path):
     inner = zip_of(a_ipynb='x', notes_txt='never unpacked')
     (source / 'class.zip').write_bytes(zip_of(ada_zip=inner, b_py='y'))
     assert seen(source / 'class.zip', tmp_path) == {
@@ -69,7 +69,7 @@ def test_archives_in_archives_are_opened_and_told_as_folders(source, tmp_path):
     assert found.parts[: found.archive] == ('class.zip',)
 
 
-def test_what_is_broken_inside_leaves_the_rest(source, tmp_path):
+def test_a_broken_inner_archive_does_not_affect_other_files(source, tmp_path):
     (source / 'class.zip').write_bytes(
         zip_of(ada_zip='no zip', bob_zip=zip_of(a_ipynb='x'), c_rar='', d_7z='')
     )
@@ -83,7 +83,7 @@ def test_what_is_broken_inside_leaves_the_rest(source, tmp_path):
     assert found == {'bob.zip/a.ipynb': b'x'}
 
 
-def test_archives_end_somewhere(source, tmp_path):
+def test_archives_nested_too_deeply_are_refused(source, tmp_path):
     packed = zip_of(a_ipynb='x')
     for _ in range(6):
         packed = zip_of(in_zip=packed)
@@ -93,7 +93,7 @@ def test_archives_end_somewhere(source, tmp_path):
     assert problem == 'more than 3 archives within each other'
 
 
-def test_one_students_bomb_leaves_room_for_the_next(source, tmp_path, monkeypatch):
+def test_an_archive_bomb_of_one_student_leaves_room_for_others(source, tmp_path, monkeypatch):
     monkeypatch.setattr(uploads, 'ONE', {'files': 20, 'bytes': 1_000})
     for student in ('ada', 'bob'):
         files = {f'f{i}_py': 'x' * 100 for i in range(30)}
@@ -105,7 +105,7 @@ def test_one_students_bomb_leaves_room_for_the_next(source, tmp_path, monkeypatc
         assert 'more files in it than are unpacked' in found[f'{student}.zip']
 
 
-def test_what_one_archive_used_up_is_gone_for_all(source, tmp_path, monkeypatch):
+def test_all_archives_of_an_upload_share_one_size_limit(source, tmp_path, monkeypatch):
     monkeypatch.setattr(uploads, 'ALL', {'files': 100, 'bytes': 1_000})
     for student in ('ada', 'bob'):
         (source / f'{student}.zip').write_bytes(zip_of(a_py='x' * 600))
@@ -117,8 +117,8 @@ def test_what_one_archive_used_up_is_gone_for_all(source, tmp_path, monkeypatch)
     assert (part.files, part.bytes) == (4, 10)
 
 
-def test_archives_in_one_are_unpacked_within_its_limit_together(source, tmp_path, monkeypatch):
-    """Forty of 150 MB, in a file of 19 kB, took 12 s of processor time."""
+def test_inner_archives_share_the_size_limit_of_their_outer_archive(source, tmp_path, monkeypatch):
+    """Forty archives of 150 MB, in a file of 19 kB, took 12 s of processor time."""
     monkeypatch.setattr(uploads, 'ONE', {'files': 100, 'bytes': 100_000})
     large, small = tar_of('large_py', 60_000), tar_of('small_py', 100)
     broken = tar_of('large_py', 60_000)[:-4] + b'    '
@@ -153,7 +153,7 @@ def tar_of(name, size):
     return packed.getvalue()
 
 
-def test_links_devices_and_what_is_too_large_are_named(source, tmp_path, monkeypatch):
+def test_symbolic_links_devices_and_files_too_large_are_named(source, tmp_path, monkeypatch):
     monkeypatch.setattr(live_folders, 'MAX_FILE_BYTES', 10)
     secret = tmp_path / 'secret.ipynb'
     secret.write_text('secret')
@@ -168,7 +168,7 @@ def test_links_devices_and_what_is_too_large_are_named(source, tmp_path, monkeyp
     assert len(found) == 4
 
 
-def test_folders_end_somewhere(source, tmp_path):
+def test_folders_nested_too_deeply_are_refused(source, tmp_path):
     deep = source.joinpath(*'abcdefghijklmnopqrstuvwxyz')
     deep.mkdir(parents=True)
     ((path, problem),) = seen(source, tmp_path).items()
@@ -177,7 +177,7 @@ def test_folders_end_somewhere(source, tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason='root may read anything')
-def test_what_must_not_be_read_is_said(source, tmp_path):
+def test_files_and_folders_without_read_permission_are_reported(source, tmp_path):
     (source / 'a.ipynb').touch(mode=0)
     (source / 'folder').mkdir(mode=0)
     assert set(seen(source, tmp_path).values()) == {
@@ -185,7 +185,7 @@ def test_what_must_not_be_read_is_said(source, tmp_path):
     }
 
 
-def test_leftovers_are_no_files_and_refused_paths_are(source, tmp_path):
+def test_leftover_folders_are_marked_as_litter_and_refused_paths_are_listed(source, tmp_path):
     with tarfile.open(source / 'ada.tar', 'w') as box:
         for name in ('.ipynb_checkpoints/a.ipynb', '__MACOSX/._a.ipynb', 'a.ipynb', '../a.ipynb'):
             box.addfile(tarfile.TarInfo(name))
@@ -203,7 +203,7 @@ def test_leftovers_are_no_files_and_refused_paths_are(source, tmp_path):
     'name',
     ['Mallory Evil_666_assignsubmission_file_', 'Lab_Mallory Evil_attempt_2026-01-02-03-04-05_'],
 )
-def test_one_upload_is_known_by_the_platform_s_name(name, source, tmp_path, monkeypatch):
+def test_the_platforms_name_of_an_upload_is_kept_in_its_paths(name, source, tmp_path, monkeypatch):
     (source / name / 'Ada Lovelace').mkdir(parents=True)
     (source / name / 'Ada Lovelace/a.ipynb').write_text('x')
     wanted = {f'{name}/Ada Lovelace/a.ipynb': b'x'}
@@ -215,7 +215,7 @@ def test_one_upload_is_known_by_the_platform_s_name(name, source, tmp_path, monk
     assert seen(archive, tmp_path) == {f'{archive.name}/a.ipynb': b'x'}
 
 
-def test_a_class_of_some_year_is_no_upload_of_canvas(source, tmp_path):
+def test_a_class_folder_with_years_is_not_taken_for_an_upload_of_canvas(source, tmp_path):
     (source / 'ros_2026_2027/ada').mkdir(parents=True)
     (source / 'ros_2026_2027/ada/a.ipynb').write_text('x')
     assert seen(source / 'ros_2026_2027', tmp_path) == {'ada/a.ipynb': b'x'}

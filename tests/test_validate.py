@@ -1,4 +1,4 @@
-"""*Validate*: what students are told of their answers before these are graded."""
+"""*Validate*: its reports to students on their answers, before these are graded."""
 
 import contextlib
 import json
@@ -51,7 +51,7 @@ def command(path, *options):
 
 
 def validated(path):
-    """What Validate reports about a notebook, at the end and meanwhile."""
+    """Return Validate's report on a notebook, and its lines of progress."""
     run = command(path, '--json')
     *progress, last = map(json.loads, run.stdout.splitlines())
     report = last['report']
@@ -65,7 +65,7 @@ def checks_of(report):
 
 
 @pytest.mark.parametrize(('lesson', 'answers'), LOSE_POINTS.values(), ids=LOSE_POINTS)
-def test_work_that_loses_points_is_promised_none(tmp_path, lesson, answers):
+def test_work_that_loses_points_is_not_promised_full_points(tmp_path, lesson, answers):
     report, _ = validated(answered(lesson, tmp_path, **answers))
     (name,) = answers
     part = next(part for part in report['parts'] if part['name'] == name)
@@ -75,7 +75,7 @@ def test_work_that_loses_points_is_promised_none(tmp_path, lesson, answers):
     assert 'Success' not in str(report)
 
 
-def test_a_right_answer_passes_and_what_is_still_open_is_said(tmp_path):
+def test_a_right_answer_passes_and_the_summary_counts_points_still_open(tmp_path):
     report, progress = validated(answered('02_joint_state', tmp_path))
     assert report['summary'] == ('All visible checks pass. 3 of 4 points are decided at grading.')
     names = checks_of(report)
@@ -88,7 +88,7 @@ def test_a_right_answer_passes_and_what_is_still_open_is_said(tmp_path):
     assert progress[-1].startswith('to_joint_state: checking: The header holds')
 
 
-def test_what_goes_on_is_told_in_the_language_of_the_lesson(tmp_path):
+def test_progress_is_reported_in_the_language_of_the_lesson(tmp_path):
     shutil.copy(ROOT / 'notebooks/zh_CN/02_joint_state/02_joint_state.ipynb', tmp_path)
     run = command(tmp_path / '02_joint_state.ipynb', '--json')
     (first, *progress, last) = map(json.loads, run.stdout.splitlines())
@@ -101,7 +101,7 @@ def test_what_goes_on_is_told_in_the_language_of_the_lesson(tmp_path):
     assert 'report' in last
 
 
-def test_a_text_is_left_to_a_person(tmp_path):
+def test_a_written_answer_is_left_to_a_person(tmp_path):
     report, _ = validated(answered('05_command_line', tmp_path))
     text = checks_of(report)['explain_counts']
     assert (text['outcome'], text['points']) == ('by hand', 2)
@@ -109,7 +109,7 @@ def test_a_text_is_left_to_a_person(tmp_path):
 
 
 @pytest.mark.slow
-def test_what_is_all_hidden_is_not_called_passed(tmp_path):
+def test_a_check_that_is_all_hidden_is_not_called_passed(tmp_path):
     report, _ = validated(answered('00_two_link_arm', tmp_path))
     assert checks_of(report)['reach-hidden']['outcome'] == 'at grading'
 
@@ -125,7 +125,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize(('answers', 'said'), BROKEN.values(), ids=BROKEN)
-def test_a_broken_cell_is_named_as_the_grader_names_it(tmp_path, answers, said):
+def test_a_broken_cell_fails_its_checks_and_is_named_by_number(tmp_path, answers, said):
     report, _ = validated(answered('02_joint_state', tmp_path, **answers))
     (part,) = report['parts']
     assert {check['outcome'] for check in part['checks']} == {'failed'}
@@ -157,7 +157,7 @@ GIVEN_UP = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('lesson', 'answers', 'said'), GIVEN_UP.values(), ids=GIVEN_UP)
-def test_a_cell_that_does_not_return_is_given_up_sooner_and_not_called_wrong(
+def test_a_cell_that_does_not_return_is_given_up_and_not_called_wrong(
     tmp_path, lesson, answers, said
 ):
     report, progress = validated(answered(lesson, tmp_path, **answers))
@@ -183,7 +183,7 @@ def test_an_answer_that_is_slow_and_right_is_not_called_wrong(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_function_that_does_not_return_is_asked_once_and_not_called_wrong(tmp_path):
+def test_a_function_that_does_not_return_runs_once_and_is_not_called_wrong(tmp_path):
     asked = tmp_path / 'asked'
     endless = f"""def to_joint_state(*args):
     open({str(asked)!r}, 'a').write('x')
@@ -199,7 +199,7 @@ def test_a_function_that_does_not_return_is_asked_once_and_not_called_wrong(tmp_
 
 
 @pytest.mark.slow
-def test_names_of_demonstrations_are_there_and_no_other_demonstration_runs(tmp_path):
+def test_only_demonstrations_that_define_needed_names_are_run(tmp_path):
     demo = next(c for c in read('notebooks', '02_joint_state').cells if 'as np' in c.source)
     assert 'demo' in demo.metadata.tags
     right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')
@@ -217,7 +217,7 @@ def test_names_of_demonstrations_are_there_and_no_other_demonstration_runs(tmp_p
 
 
 @pytest.mark.slow
-def test_a_students_workspace_is_left_alone_whatever_runs(tmp_path):
+def test_validate_makes_no_workspace_even_if_an_answer_does(tmp_path):
     right = next(c for c in read('solutions', '03_publisher').cells if c.id == 'five_hz')
     make = f'make_workspace()\nopen({str(tmp_path / "ran")!r}, "w").close()\n'
     path = answered('03_publisher', tmp_path, five_hz=f'{make}{right.source}')
@@ -233,7 +233,7 @@ def test_a_students_workspace_is_left_alone_whatever_runs(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_module_beside_the_notebook_is_found_and_cells_of_ones_own_are_lent(tmp_path):
+def test_an_answer_may_use_a_module_beside_the_notebook_and_added_cells(tmp_path):
     (tmp_path / 'helper.py').write_text('from math import radians as to_rad\n')
     right = next(c for c in read('solutions', '02_joint_state').cells if c.id == 'to_joint_state')
     path = answered(
@@ -294,7 +294,7 @@ DAMAGE = {
 @pytest.mark.parametrize(
     ('damage', 'said'), DAMAGE.items(), ids=lambda each: getattr(each, '__name__', '')
 )
-def test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be(tmp_path, damage, said):
+def test_a_damaged_notebook_is_validated_as_far_as_possible(tmp_path, damage, said):
     note, is_whole = said
     report, _ = validated(damaged(answered('02_joint_state', tmp_path), damage))
     assert any(note in each for each in report['notes']), report['notes']
@@ -307,7 +307,7 @@ def test_a_notebook_that_was_damaged_is_validated_as_far_as_it_can_be(tmp_path, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM], ids=str)
-def test_who_stops_it_ends_all_that_it_began(tmp_path, number):
+def test_a_signal_ends_validate_and_all_processes_that_it_started(tmp_path, number):
     path = answered('02_joint_state', tmp_path, to_joint_state='import time; time.sleep(600)')
     clean = students_environment()
     run = [sys.executable, '-P', '-m', 'my_robot_basics.validate', '--json', str(path)]
@@ -338,7 +338,7 @@ while not os.path.exists({file!r}) or not open({file!r}).read():
 
 
 @pytest.mark.slow
-def test_what_an_answer_forks_and_lets_go_ends_with_it(tmp_path):
+def test_a_daemon_forked_by_an_answer_ends_with_validate(tmp_path):
     daemon = DAEMON.format(file=str(tmp_path / 'pid'))
     validated(answered('02_joint_state', tmp_path, to_joint_state=daemon))
     with contextlib.suppress(psutil.NoSuchProcess):
@@ -356,7 +356,7 @@ NO_LESSON = {
 
 
 @pytest.mark.parametrize(('text', 'said'), NO_LESSON.values(), ids=NO_LESSON)
-def test_what_is_no_lesson_is_refused_in_a_sentence(tmp_path, text, said):
+def test_a_file_that_is_not_a_lesson_is_refused_in_a_sentence(tmp_path, text, said):
     path = tmp_path / 'lesson.ipynb'
     if text is not None:
         path.write_text(text)
@@ -366,7 +366,7 @@ def test_what_is_no_lesson_is_refused_in_a_sentence(tmp_path, text, said):
     assert 'Traceback' not in run.stderr
 
 
-def test_the_verb_shows_marks_points_and_reasons(tmp_path):
+def test_course_validate_prints_marks_points_and_reasons(tmp_path):
     wrong = 'def to_joint_state(a, b, stamp): return JointState(name=["joint1", "joint2"])'
     path = answered('02_joint_state', tmp_path, to_joint_state=wrong)
     run = subprocess.run(

@@ -35,7 +35,7 @@ def server():
 
 
 def in_kernels(server, tmp_path, use, number=1):
-    """What comes of using so many kernels, one after the other."""
+    """Return the results of using so many kernels, one after the other."""
 
     async def one(name):
         kernel = LocalKernel(tmp_path / name, {'FOO': name}, server)
@@ -51,13 +51,13 @@ def in_kernels(server, tmp_path, use, number=1):
     return asyncio.run(each())
 
 
-def test_what_is_imported_ahead_belongs_to_no_kernel():
+def test_modules_imported_before_forking_start_no_domain_thread_or_zmq_context():
     command = [sys.executable, '-P', '-c', NOTHING_SHARED]
     told = subprocess.run(command, capture_output=True, text=True, check=True)
     assert told.stdout.split() == ['None', '1', 'None']
 
 
-def test_each_kernel_has_a_folder_an_environment_and_numbers_of_its_own(server, tmp_path):
+def test_each_kernel_has_its_own_folder_environment_and_random_numbers(server, tmp_path):
     async def tell(kernel):
         result = await kernel.run(TELL, timeout_sec=60.0)
         return eval(''.join(output.text for output in result.outputs))
@@ -73,7 +73,7 @@ def test_each_kernel_has_a_folder_an_environment_and_numbers_of_its_own(server, 
     [('while True: pass', True), ('import time; time.sleep(3)', False)],
     ids=['computes', 'sleeps'],
 )
-def test_on_a_busy_machine_code_that_has_a_processor_is_given_up_all_the_same(
+def test_code_that_computes_is_given_up_on_a_busy_machine_but_code_that_sleeps_is_not(
     server, tmp_path, monkeypatch, code, is_cut
 ):
     monkeypatch.setattr(Stopwatch, 'free_sec', lambda self: 0.0)
@@ -87,7 +87,7 @@ def test_on_a_busy_machine_code_that_has_a_processor_is_given_up_all_the_same(
     assert not result.died
 
 
-def test_a_server_that_has_ended_is_a_failure_of_the_rooms(tmp_path):
+def test_an_ended_fork_server_is_reported_as_a_failure_of_the_rooms(tmp_path):
     async def nothing(kernel):
         pass
 
@@ -97,7 +97,9 @@ def test_a_server_that_has_ended_is_a_failure_of_the_rooms(tmp_path):
             in_kernels(server, tmp_path, nothing)
 
 
-def test_two_exercises_are_judged_at_a_time_and_told_in_the_lessons_order(tmp_path, monkeypatch):
+def test_two_exercises_are_judged_at_a_time_and_reported_in_the_lessons_order(
+    tmp_path, monkeypatch
+):
     now, most = set(), []
 
     async def judge(notebook, exercise, open_rooms, budget):

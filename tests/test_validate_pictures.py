@@ -49,17 +49,17 @@ def test_ordinary_pictures_are_shown(encoded):
 
 
 @pytest.mark.parametrize('encoded', NOT_SHOWN)
-def test_what_would_take_a_gigabyte_to_show_or_is_no_picture_is_not(encoded):
+def test_huge_pictures_and_data_that_is_no_picture_are_not_shown(encoded):
     assert why_not_shown(encoded)
 
 
-def test_a_small_file_can_be_a_large_picture():
+def test_a_small_file_of_a_huge_picture_is_refused_for_its_pixels():
     assert len(BOMB) < 60_000
     assert '16,000 × 16,000' in why_not_shown(BOMB)
     assert MAX_PIXELS < 16_000**2
 
 
-def test_it_is_left_out_wherever_it_would_be_shown():
+def test_a_huge_picture_is_left_out_of_outputs_pages_and_attachments():
     run = CellRun()
     output = run.keep('display_data', {'data': {'image/png': BOMB, 'text/plain': 'x'}})
     said = '[a picture of 16,000 × 16,000 pixels, of 25,000,000 at most, was left out]'

@@ -1,4 +1,4 @@
-"""What Validate's report adds up to, in words."""
+"""The report of Validate: its summary, its lines, and when it comes."""
 
 import asyncio
 
@@ -81,11 +81,11 @@ LINES = {
 
 
 @pytest.mark.parametrize(('one', 'line'), LINES.items(), ids=lambda each: str(each)[:20])
-def test_a_check_has_its_mark_and_its_points(one, line):
+def test_the_line_of_a_check_shows_its_mark_and_its_points(one, line):
     assert line in as_text(report(one)).splitlines()
 
 
-def test_what_validate_fails_in_itself_is_no_fault_of_an_answer(monkeypatch, tmp_path):
+def test_a_failure_of_validate_itself_leaves_answers_not_checked(monkeypatch, tmp_path):
     class NoRooms:
         def __init__(self, **options):
             pass

@@ -1,4 +1,4 @@
-"""The address behind the Validate button: lines as they come, and a server that goes on."""
+"""The address behind the Validate button sends lines as they come, and blocks no other request."""
 
 import json
 import shutil
@@ -83,7 +83,7 @@ def server(folder):
         server.process.wait(30)
 
 
-def test_the_button_has_the_words_of_its_notebook(server, folder):
+def test_the_button_has_texts_in_the_language_of_its_notebook(server, folder):
     english = json.loads((folder / '02_joint_state.ipynb').read_text(encoding='utf-8'))
     english['metadata'].setdefault('my_robot_basics', {})['language'] = 'zh_CN'
     (folder / 'chinese.ipynb').write_text(json.dumps(english), encoding='utf-8')
@@ -109,7 +109,7 @@ def test_a_report_comes_at_the_end_of_lines_of_progress(server):
 
 
 @pytest.mark.slow
-def test_meanwhile_the_server_answers_and_who_closes_the_dialog_ends_it_all(server):
+def test_the_server_answers_while_validating_and_closing_the_dialog_ends_validate(server):
     response = server.validate('03_publisher.ipynb')
     assert b'starting two kernels' in response.readline()
     assert b'running your cells' in response.readline()
@@ -131,7 +131,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(('path', 'said'), REFUSED.values(), ids=REFUSED)
-def test_what_is_no_notebook_is_refused_in_a_sentence(server, path, said):
+def test_a_path_without_a_notebook_is_refused_in_a_sentence(server, path, said):
     with server.validate(path) as response:
         (line,) = map(json.loads, response)
     assert said in line['failed']
@@ -141,14 +141,16 @@ def test_what_is_no_notebook_is_refused_in_a_sentence(server, path, said):
     ('path', 'token', 'code'),
     [('../secret.ipynb', TOKEN, 403), ('02_joint_state.ipynb', 'another', 403)],
 )
-def test_nobody_validates_outside_or_without_a_token(server, path, token, code):
+def test_validating_outside_the_folder_or_with_a_wrong_token_is_forbidden(
+    server, path, token, code
+):
     with pytest.raises(urllib.error.HTTPError) as refused:
         server.validate(path, token=token)
     assert refused.value.code == code
 
 
 @pytest.mark.slow
-def test_where_validate_itself_fails_its_last_line_is_told(server, folder):
+def test_the_error_is_reported_if_validate_itself_fails(server, folder):
     broken = json.loads((folder / '02_joint_state.ipynb').read_text())
     for cell in broken['cells']:
         cell['metadata'].get('nbgrader', {})['points'] = 'many'
@@ -159,7 +161,7 @@ def test_where_validate_itself_fails_its_last_line_is_told(server, folder):
 
 
 @pytest.mark.slow
-def test_progress_is_what_validate_has_written_down_for_this_user(server, folder):
+def test_progress_shows_the_exercises_that_have_passed_in_validate(server, folder):
     shutil.copy(ROOT / 'notebooks/index.ipynb', folder)
     answered('01_topics', folder / '01_topics')
 
@@ -183,7 +185,7 @@ def test_progress_is_what_validate_has_written_down_for_this_user(server, folder
     assert 'is damaged' in states()[0]['notes'][0]
 
 
-def test_progress_of_another_notebook_is_refused_in_a_sentence(server):
+def test_progress_of_a_lesson_notebook_is_refused_in_a_sentence(server):
     with server.progress('02_joint_state.ipynb') as response:
         assert 'is not the contents page' in json.load(response)['failed']
 
@@ -191,7 +193,7 @@ def test_progress_of_another_notebook_is_refused_in_a_sentence(server):
 @pytest.mark.parametrize(
     ('path', 'token'), [('../index.ipynb', TOKEN), ('index.ipynb', 'another')]
 )
-def test_nobody_sees_progress_outside_or_without_a_token(server, path, token):
+def test_progress_outside_the_folder_or_with_a_wrong_token_is_forbidden(server, path, token):
     with pytest.raises(urllib.error.HTTPError) as refused:
         server.progress(path, token=token)
     assert refused.value.code == 403

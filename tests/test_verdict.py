@@ -50,7 +50,7 @@ JUDGED = {
 
 
 @pytest.mark.parametrize(('run', 'outcome', 'reason'), JUDGED.values(), ids=JUDGED)
-def test_a_check_that_came_to_an_end_is_judged(cell, run, outcome, reason):
+def test_a_check_that_ran_to_its_end_passes_or_fails_with_a_reason(cell, run, outcome, reason):
     verdict = judge(cell, run, [])
     assert (verdict.outcome, verdict.reason) == (outcome, reason)
     assert (verdict.grade_id, verdict.points) == ('five_hz_rate', 3.0)
@@ -61,7 +61,7 @@ def points(earned):
     return new_output('display_data', {'application/vnd.my_robot_basics.points': earned})
 
 
-def test_some_of_the_points_are_left_where_the_check_says_so(cell):
+def test_a_partly_right_answer_gets_the_points_that_its_check_reports(cell):
     run = failing('PartlyRight', '1 wrong')
     run.outputs.insert(0, points('1.0'))
     verdict = judge(cell, run, [])
@@ -81,7 +81,7 @@ def said(what):
     ('outputs', 'only_there'),
     [([], False), ([said('began')], True), ([said('began'), said('already')], False)],
 )
-def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, only_there):
+def test_a_failure_records_whether_it_occurred_only_in_the_hidden_part(cell, outputs, only_there):
     run = failing()
     run.outputs[:0] = map(nbformat.from_dict, outputs)
     verdict = judge(cell, run, [])
@@ -90,7 +90,7 @@ def test_a_failure_says_whether_it_is_of_what_students_are_given(cell, outputs, 
     assert cell.metadata[KEY].failed_at_grading is only_there
 
 
-def test_the_hint_is_the_one_of_this_reason(cell):
+def test_a_verdict_has_the_hint_that_belongs_to_its_reason(cell):
     """A check may have had another failure before, and continued."""
     hints = 'see b', 'fix: that', 'fix: this'
     told = [new_output('display_data', {'application/vnd.my_robot_basics.hint': h}) for h in hints]
@@ -114,7 +114,9 @@ def test_the_hint_is_the_one_of_this_reason(cell):
         ),
     ],
 )
-def test_how_an_answer_ended_in_the_hidden_part_is_for_instructors(cell, outputs, note, details):
+def test_the_ending_of_an_answer_in_the_hidden_part_is_detailed_to_instructors_only(
+    cell, outputs, note, details
+):
     """A signal's number may be one of the hidden inputs."""
     run = failing(ending='your code sent it SIGUSR1')
     run.outputs[:0] = map(nbformat.from_dict, outputs)
@@ -122,14 +124,14 @@ def test_how_an_answer_ended_in_the_hidden_part_is_for_instructors(cell, outputs
     assert (verdict.notes, verdict.details) == ((note,), details)
 
 
-def test_how_it_ended_there_stands_beside_what_failed_there(cell):
+def test_details_for_instructors_contain_the_failed_assertion_and_the_ending(cell):
     run = failing('AssertionError', '7 is not 5', ending='your code sent it SIGUSR1')
     run.outputs.insert(0, nbformat.from_dict(said('began')))
     assert judge(cell, run, []).details == '7 is not 5; your code sent it SIGUSR1'
 
 
 @pytest.mark.parametrize('earned', ['0.0', '3.0', '-1.0', 'nan', 'inf'])
-def test_no_other_number_of_points_is_a_part_of_them(cell, earned):
+def test_an_invalid_number_of_partial_points_gives_no_verdict(cell, earned):
     run = failing('PartlyRight', '1 wrong')
     run.outputs.insert(0, points(earned))
     with pytest.raises(RoomFailure, match='came to no verdict'):
@@ -147,7 +149,9 @@ NO_VERDICT = {
 
 
 @pytest.mark.parametrize(('run', 'happened'), NO_VERDICT.values(), ids=NO_VERDICT)
-def test_a_check_that_did_not_come_to_an_end_is_the_graders_failure(cell, run, happened):
+def test_a_check_that_did_not_run_to_its_end_counts_as_a_failure_of_the_grader(
+    cell, run, happened
+):
     with pytest.raises(RoomFailure) as failure:
         judge(cell, run, [])
     assert f'`five_hz_rate` came to no verdict: {happened}' in str(failure.value)
@@ -166,13 +170,13 @@ ENDED_BY = {
 
 
 @pytest.mark.parametrize(('own', 'reason'), ENDED_BY.values(), ids=ENDED_BY)
-def test_a_kernel_that_the_student_ended_is_a_zero_with_its_reason(cell, own, reason):
+def test_a_kernel_ended_by_student_code_earns_zero_with_the_reason(cell, own, reason):
     verdict = judge(cell, None, own)
     assert (verdict.outcome, verdict.score) == ('failed', 0.0)
     assert verdict.reason == f'the kernel of your notebook ended before the check: {reason}'
 
 
-def test_a_failure_tells_what_happened_in_the_students_own_cells(cell):
+def test_a_failure_has_notes_on_what_went_wrong_in_the_students_cells(cell):
     own = [
         ('five_hz', failing('SyntaxError', "'(' was\n never closed \x1b[31m\u202e" + 'x' * 5_000)),
         ('five_hz-run', ended(timed_out=True)),
@@ -234,7 +238,7 @@ Invoked with: <rclpy.Node object at 0x7f>, <class 'sensor_msgs.msg.JointState'>,
         ),
     ],
 )
-def test_an_error_is_told_without_what_says_nothing(cell, error, told):
+def test_an_error_of_a_students_cell_is_shortened_and_explained(cell, error, told):
     [note] = judge(cell, failing(), [('five_hz', failing(*error))]).notes
     assert note.endswith(told)
 
@@ -269,7 +273,7 @@ INSIDE = 'File rclpy/qos.py:136, in QoSProfile.reliability(self, value)\n--> 136
         ),
     ],
 )
-def test_an_error_that_says_nothing_is_told_with_the_line_of_the_student(cell, name, frames, told):
+def test_an_error_without_a_message_is_reported_with_the_students_line(cell, name, frames, told):
     lines = '\n'.join(['---', f'{name}  Traceback (most recent call last)', *frames]).split('\n')
     run = ended(error=new_output('error', ename=name, evalue='', traceback=lines))
     [note] = judge(cell, failing(), [('five_hz', run)]).notes
@@ -324,7 +328,7 @@ def test_a_failure_is_written_as_one_error_without_the_test(cell):
     }
 
 
-def test_an_ungraded_cell_says_that_a_person_looks(cell):
+def test_the_output_of_an_ungraded_cell_says_that_a_person_has_to_look(cell):
     verdict = ungraded(cell, 'the test kernel did not start')
     assert (verdict.outcome, verdict.score, verdict.points) == ('ungraded', None, 3.0)
     write_verdict(cell, verdict, [])

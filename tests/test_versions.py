@@ -98,14 +98,14 @@ def another_processor(machine):
         another_processor,
     ],
 )
-def test_the_hash_of_the_machinery_is_another_one_after(machine, change):
+def test_the_hash_changes_with_code_limits_packages_python_and_processor(machine, change):
     before = machine.now()
     assert machine.now() == before
     change(machine)
     assert machine.now() != before
 
 
-def test_what_python_writes_beside_code_and_what_leads_nowhere_change_no_hash(machine):
+def test_bytecode_and_symbolic_links_do_not_change_the_hash(machine):
     before = machine.now()
     (machine.robot / '__pycache__').mkdir()
     (machine.robot / '__pycache__' / 'code.pyc').write_text('1')
@@ -114,7 +114,7 @@ def test_what_python_writes_beside_code_and_what_leads_nowhere_change_no_hash(ma
     assert machine.now() == before
 
 
-def test_the_order_in_which_a_folder_tells_what_is_in_it_changes_no_hash(machine, monkeypatch):
+def test_the_order_of_folder_entries_does_not_change_the_hash(machine, monkeypatch):
     before, scandir = machine.now(), os.scandir
     monkeypatch.setattr(
         versions.os, 'scandir', lambda folder: nullcontext([*scandir(folder)][::-1])
@@ -122,7 +122,7 @@ def test_the_order_in_which_a_folder_tells_what_is_in_it_changes_no_hash(machine
     assert machine.now() == before
 
 
-def test_the_hash_holds_this_very_grader_and_robot():
+def test_the_hash_covers_the_grader_and_the_package_of_this_clone():
     folders = {Path(versions.__file__).parents[1], Path(versions.my_robot_basics.__file__).parent}
     assert folders == {ROOT / 'grader', ROOT / 'my_robot_basics' / 'my_robot_basics'}
     assert limits.__file__ in versions._code(str(ROOT / 'grader'))

@@ -37,7 +37,7 @@ def words_of(name):
     return [word.lower() for word in re.findall(r'[A-Z]?[a-z]+|[A-Z]+', name)]
 
 
-def test_names_use_the_fields_words():
+def test_names_in_the_code_use_the_words_of_the_field():
     paths = [path for folder in FOLDERS for path in (ROOT / folder).rglob('*.py')]
     found = {
         (str(path.relative_to(ROOT)), name, INSTEAD[word])

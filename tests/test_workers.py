@@ -38,10 +38,10 @@ def task(course, first_line=''):
 
 def pid_of(result):
     assert result.notebook.metadata.my_robot_basics.seed == 'abc'
-    return int(told(result)[0])
+    return int(notes_of(result)[0])
 
 
-def told(result):
+def notes_of(result):
     lines = result.notebook.cells[-2].outputs[0].text.splitlines()
     return [line.removeprefix('note: ') for line in lines if line.startswith('note: ')]
 
@@ -72,7 +72,7 @@ def wait_for(happened):
         time.sleep(0.05)
 
 
-def test_as_many_processes_grade_as_asked_for_and_end_with_the_run(course, tmp_path):
+def test_the_requested_number_of_workers_grades_and_ends_with_the_run(course, tmp_path):
     mark = tmp_path / 'go'
     with Workers(2, command=COMMAND) as backend:
         under_way = [backend.submit(task(course, f'# wait {mark}')) for _ in range(6)]
@@ -87,9 +87,7 @@ def test_as_many_processes_grade_as_asked_for_and_end_with_the_run(course, tmp_p
 
 
 @pytest.mark.slow
-def test_one_process_grades_as_many_as_it_takes_at_a_time_before_another_is_begun(
-    course, tmp_path
-):
+def test_a_worker_is_filled_to_its_load_before_another_one_is_started(course, tmp_path):
     mark, loads = tmp_path / 'go', []
     with Workers(2, command=COMMAND) as backend:
         for number in (1, 2, 3):
@@ -100,12 +98,12 @@ def test_one_process_grades_as_many_as_it_takes_at_a_time_before_another_is_begu
     assert loads == [[1], [2], [2, 1]]
 
 
-def test_no_process_is_started_where_there_is_nothing_to_do():
+def test_no_worker_is_started_without_a_submission():
     with Workers(2, command=COMMAND):
         assert team() == []
 
 
-def test_a_failure_comes_back_with_its_trace(course):
+def test_a_failure_in_a_worker_is_raised_with_its_traceback(course):
     with Workers(1, command=COMMAND) as backend:
         with pytest.raises(TaskFailed, match=r'^OSError: no room$') as failed:
             backend.submit(task(course, '# fail')).result()
@@ -113,9 +111,7 @@ def test_a_failure_comes_back_with_its_trace(course):
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_is_replaced_and_its_submissions_are_graded_elsewhere(
-    course, tmp_path
-):
+def test_submissions_of_a_killed_worker_are_graded_by_its_replacement(course, tmp_path):
     mark = tmp_path / 'go'
     with Workers(1, in_flight=3, command=COMMAND) as backend:
         first = pid_of(backend.submit(task(course)).result())
@@ -128,7 +124,7 @@ def test_a_worker_that_is_killed_is_replaced_and_its_submissions_are_graded_else
         assert pid_of(backend.submit(task(course)).result()) not in pids | {first}
 
 
-def test_a_submission_that_kills_whoever_grades_it_costs_nobody_else(course, tmp_path):
+def test_a_submission_that_kills_its_workers_does_not_affect_others(course, tmp_path):
     with Workers(1, in_flight=3, command=COMMAND) as backend:
         works = [backend.submit(task(course, line)) for line in ('', '# die', '')]
         works.append(backend.submit(task(course, f'# die once {tmp_path / "mark"}')))
@@ -157,7 +153,7 @@ def test_a_worker_that_hangs_is_replaced(course, tmp_path, monkeypatch):
         assert not hung.is_running()
 
 
-def test_a_worker_that_loops_ends_without_the_run_that_would_end_it(course, tmp_path):
+def test_a_looping_worker_ends_itself_after_the_run_has_gone(course, tmp_path):
     ours, theirs = socket.socketpair()
     with ours, theirs:
         fd = theirs.fileno()
@@ -171,14 +167,14 @@ def test_a_worker_that_loops_ends_without_the_run_that_would_end_it(course, tmp_
         process.kill()
 
 
-def test_what_a_worker_starts_inherits_no_way_to_the_run(course):
+def test_a_child_process_of_a_worker_inherits_only_the_standard_streams(course):
     with Workers(1, command=COMMAND) as backend:
         result = backend.submit(task(course, '# child')).result()
-    assert told(result)[1] == '0 1 2'
+    assert notes_of(result)[1] == '0 1 2'
 
 
 @pytest.mark.slow
-def test_a_worker_that_says_it_has_more_to_say_than_any_result_is_given_up(course):
+def test_a_worker_that_announces_too_large_a_result_is_given_up(course):
     with Workers(1, command=COMMAND) as backend:
         with pytest.raises(TaskFailed, match='ended before it was done, 3 times'):
             backend.submit(task(course, '# endless')).result()
@@ -186,7 +182,7 @@ def test_a_worker_that_says_it_has_more_to_say_than_any_result_is_given_up(cours
 
 
 @pytest.mark.parametrize(('stalled_share', 'allowed'), [(0.0, 3), (1.0, 2)])
-def test_more_are_in_flight_while_processors_stand_idle(
+def test_more_submissions_are_in_flight_while_processors_are_idle(
     course, tmp_path, monkeypatch, stalled_share, allowed
 ):
     stalled_sec = itertools.count(1.0, 60.0 * stalled_share)
@@ -204,12 +200,12 @@ def test_more_are_in_flight_while_processors_stand_idle(
 
 
 @pytest.mark.parametrize('in_flight', [1, 7])
-def test_no_more_are_in_flight_than_asked_for(in_flight):
+def test_no_more_submissions_are_in_flight_than_requested(in_flight):
     backend = Workers(2, in_flight=in_flight)
     assert backend.capacity == backend._gate.allowed == in_flight
 
 
-def test_memory_bounds_how_many_are_in_flight(monkeypatch):
+def test_available_memory_limits_the_submissions_in_flight(monkeypatch):
     rooms = []
     for submissions in (0, 1, 2.5, 1000):
         left = int(submissions * SUBMISSION_MEMORY_BYTES)

@@ -22,7 +22,7 @@ TIMEOUT_SEC = 120
 
 
 def ros2_run(executable, until):
-    """Lines for a shell: start an executable, wait for a word of its, end it, show all it said."""
+    """Lines for a shell: start an executable, wait for a word of its output, end it, print all."""
     return (
         f'ros2 run my_robot_basics {executable} >said.txt 2>&1 & pid=$!\n'
         f'while kill -0 $pid && ! grep -q "{until}" said.txt; do sleep 0.1; done 2>kill.txt\n'
@@ -68,14 +68,14 @@ def shell(script, **environment):
 # --- what is made and kept -----------------------------------------------------------------------
 
 
-def test_by_default_it_lies_in_the_course_and_out_of_git(monkeypatch):
+def test_the_default_workspace_is_in_the_course_and_ignored_by_git(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_WORKSPACE')
     assert classroom.workspace() == ROOT / 'ros_ws'
     ignored = subprocess.run(['git', 'check-ignore', '-q', 'ros_ws/'], cwd=ROOT)
     assert ignored.returncode == 0
 
 
-def test_it_holds_a_package_of_nodes_and_the_files_to_copy_from(folder, capsys):
+def test_a_new_workspace_holds_the_package_and_reference_files_to_copy_from(folder, capsys):
     assert workspace.main([]) is None
     package = folder / 'src/my_robot_basics'
     modules = {path.name for path in package.glob('my_robot_basics/*.py')}
@@ -96,7 +96,7 @@ def test_it_holds_a_package_of_nodes_and_the_files_to_copy_from(folder, capsys):
     assert workspace.BUILD in said
 
 
-def test_what_the_student_wrote_is_kept_and_named(package, capsys, monkeypatch):
+def test_files_that_a_student_changed_are_kept_and_listed(package, capsys, monkeypatch):
     (package / 'setup.py').write_text('mine')
     (package / 'my_robot_basics/my_node.py').write_text('mine, too')
     (package / 'my_robot_basics/hello_node.py').unlink()
@@ -125,14 +125,14 @@ def test_what_the_student_wrote_is_kept_and_named(package, capsys, monkeypatch):
     }
 
 
-def test_a_workspace_that_nobody_has_edited_is_said_to_be_so(package, capsys):
+def test_an_unedited_workspace_is_reported_as_unchanged(package, capsys):
     make_workspace()
     assert 'the package, unchanged' in capsys.readouterr().out
     make_workspace(refresh=True)
     assert not (package.parents[1] / 'kept').exists()
 
 
-def test_refresh_begins_anew_and_loses_nothing(folder, package, capsys):
+def test_refresh_makes_a_new_copy_and_keeps_the_former_one(folder, package, capsys):
     for number in (1, 2):
         (package / 'setup.py').write_text(f'mine {number}')
         make_workspace(refresh=True)
@@ -150,24 +150,24 @@ def test_a_copy_that_was_cut_short_is_made_again(folder, capsys):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason='root may write anywhere')
-def test_a_folder_that_cannot_be_written_is_said_in_a_line(folder):
+def test_a_workspace_that_cannot_be_written_is_reported_in_one_line(folder):
     folder.mkdir(mode=0o500)
     assert workspace.main([]).startswith('course: [Errno 13] Permission denied')
 
 
-def test_without_the_files_of_the_package_it_says_what_to_do(folder, tmp_path, monkeypatch):
+def test_a_missing_package_is_reported_with_the_command_to_use(folder, tmp_path, monkeypatch):
     monkeypatch.setattr(workspace, 'PACKAGE', tmp_path)
     assert workspace.main([]).endswith('start the notebook with ./course lab')
 
 
-def test_the_command_refreshes_too(package, capsys):
+def test_the_command_workspace_has_the_option_refresh(package, capsys):
     (package / 'setup.py').write_text('mine')
     assert workspace.main([]) is None
     assert workspace.main(['--refresh']) is None
     assert 'moved ' in capsys.readouterr().out
 
 
-def test_the_courses_own_is_shown_in_the_file_browser(tmp_path, monkeypatch):
+def test_the_workspace_of_the_course_is_linked_into_the_file_browser(tmp_path, monkeypatch):
     monkeypatch.setattr(workspace, 'LESSONS', tmp_path / 'notebooks')
     link = tmp_path / 'notebooks/ros_ws'
     link.parent.mkdir()
@@ -191,7 +191,7 @@ def test_the_courses_own_is_shown_in_the_file_browser(tmp_path, monkeypatch):
     assert not link.is_symlink()
 
 
-def test_the_link_to_it_is_no_part_of_the_lessons():
+def test_the_link_to_the_workspace_is_ignored_by_git():
     ignored = subprocess.run(['git', 'check-ignore', '-q', 'notebooks/ros_ws'], cwd=ROOT)
     assert ignored.returncode == 0
 
@@ -201,7 +201,7 @@ def test_the_link_to_it_is_no_part_of_the_lessons():
 
 @pytest.fixture(scope='module')
 def first_build(tmp_path_factory):
-    """A workspace with what was built in it, to look at, and what the build said."""
+    """A workspace that was built, to be read only, and the output of the build."""
     folder = tmp_path_factory.mktemp('built') / 'ros ws'
     # set, this variable lets setuptools warn
     build = 'env -u PYTHONDONTWRITEBYTECODE colcon build --packages-select my_robot_basics'
@@ -222,7 +222,7 @@ def built(first_build, monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_the_build_says_what_it_says_on_a_robot(first_build):
+def test_a_build_prints_the_usual_output_of_colcon(first_build):
     _, said = first_build
     seconds = r'\[[\d.]+s\]'
     assert re.search(
@@ -234,7 +234,7 @@ def test_the_build_says_what_it_says_on_a_robot(first_build):
 
 
 @pytest.mark.starts
-def test_what_was_built_is_what_runs(built):
+def test_nodes_built_in_the_workspace_are_those_that_run(built):
     installed = built.parents[1] / 'install/my_robot_basics'
     nodes = ['hello_node', 'kinematics_node', 'kinematics_publisher', 'kinematics_subscriber']
     assert shell(f'{SOURCE} ros2 pkg executables my_robot_basics --full-path').split('\n') == [
@@ -269,7 +269,7 @@ def main(args=None):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
+def test_a_node_added_to_setup_py_can_be_run_after_the_next_build(package):
     shell(BUILD)
     run = SOURCE + ros2_run('my_node', until='new')
     (package / 'my_robot_basics/my_node.py').write_text(textwrap.dedent(NODE))
@@ -283,7 +283,7 @@ def test_a_new_node_and_its_line_are_found_after_the_next_build(package):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_the_tools_are_never_those_of_the_copy(package):
+def test_the_ros2_tools_do_not_use_the_students_copy_of_the_package(package):
     for name in ('__init__', 'two_link_kinematics'):
         (package / f'my_robot_basics/{name}.py').write_text('raise SystemExit("the copy")\n')
     said = shell(
@@ -294,7 +294,7 @@ def test_the_tools_are_never_those_of_the_copy(package):
 
 
 @pytest.mark.starts
-def test_a_terminal_that_sources_it_needs_nothing_else(built):
+def test_a_terminal_needs_nothing_but_the_sourced_workspace(built):
     bare = {'PATH': '/usr/bin:/bin', 'HOME': str(built), 'ROS_LOG_DIR': str(built / 'log')}
     if ' ' in sys.executable:
         # colcon's setup.bash stumbles over it, and the terminals of the course set this
@@ -314,7 +314,7 @@ def test_a_terminal_that_sources_it_needs_nothing_else(built):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package(folder):
+def test_a_cell_builds_and_runs_the_workspace_but_the_kernel_keeps_its_package(folder):
     cells = [
         'from my_robot_basics.live import make_workspace\nmake_workspace()',
         f'%%bash\ncd "$ROS_WS"\n{BUILD}{SOURCE}'
@@ -340,7 +340,7 @@ def test_in_a_cell_all_of_it_works_and_the_kernel_keeps_to_the_installed_package
     assert said.endswith(f'{ROOT}/my_robot_basics/my_robot_basics/__init__.py\n')
 
 
-def test_help_is_for_students(capsys):
+def test_the_help_of_the_command_workspace_is_written_for_students(capsys):
     with pytest.raises(SystemExit):
         workspace.main(['--help'])
     said = ' '.join(capsys.readouterr().out.split())

@@ -98,7 +98,7 @@ COMMANDS = (
     (f'ros2 topic pub --once {TOPIC} sensor_msgs/msg/JointState {POSE}', 'publishing #1'),
     (f'topic_doctor --seconds 3 {TOPIC}', f'All is well on {TOPIC}'),
 )
-"""What is typed, and what must be seen before the next line: in a line without it."""
+"""Each line to type, and the output to wait for before the next, which the line does not hold."""
 
 
 @pytest.mark.slow
@@ -119,7 +119,7 @@ def test_the_commands_of_the_lessons_work_in_jupyterlabs_terminal(lab):
 PROGRAMS = r'(?:ros2|topic_doctor|colcon|source|timeout)\b'
 
 
-def test_every_command_that_a_text_names_is_typed_here_or_run_in_a_lesson():
+def test_every_command_named_in_a_text_is_run_in_a_terminal_test_or_a_lesson():
     notebooks = [nbformat.read(path, as_version=4) for path in ROOT.glob('solutions/*/*.ipynb')]
     cells = [cell for notebook in notebooks for cell in notebook.cells]
     run = [line for c in cells if c.cell_type == 'code' for line in c.source.splitlines()]

@@ -68,7 +68,7 @@ def test_the_page_has_every_cell_of_an_exercise():
 
 
 @pytest.mark.starts  # to release takes long
-def test_what_students_get_holds_no_answer_and_no_hidden_test(course):
+def test_the_release_of_the_example_holds_no_answer_and_no_hidden_test(course):
     text = course.release_path(LESSON).read_text(encoding='utf-8')
     assert 'YOUR CODE HERE' in text
     assert 'check_number(1.5)' in text
@@ -78,7 +78,7 @@ def test_what_students_get_holds_no_answer_and_no_hidden_test(course):
 
 @pytest.mark.slow
 @pytest.mark.isolation
-def test_it_earns_what_the_page_says(course):
+def test_answers_to_the_example_earn_the_points_stated_on_the_page(course):
     source = next(cell.source for cell in example().cells if cell.id == 'doubler')
     for student, (published, _) in ANSWERS.items():
         notebook = course.release(LESSON)
