@@ -59,7 +59,7 @@ PRINTED = [
     ((TOPIC, '--field', 'header', '--flow-style', '--no-str'),
      r"stamp:\n  sec: \d+\n  nanosec: \d+\nframe_id: '<string length: <9>>'\n---\n"),
     ((TOPIC, '--field', 'name', '--filter', 'len(m) == 2'), r"\['joint1', 'joint2'\]\n---\n"),
-    (('/arm_description',), r'data: two links\n---\n'),  # latched, as the subscription
+    (('/arm_description',), r'data: two links\n---\n'),  # latched: echo adapts its QoS
     (('/arm_description', '-l', '3'), r'data: two...\n---\n'),
     (('/arm_description', '--qos-reliability', 'reliable', '--qos-durability',
       'transient_local', '--qos-depth', '1'), r'data: two links\n---\n'),

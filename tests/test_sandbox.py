@@ -31,9 +31,7 @@ def inside(request, loop):
         assert kernel.why_not_forked == ''
         ran = await kernel.run(code, timeout_sec=120.0)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(
-                KernelPaths, 'remove', lambda paths: None
-            )  # later kernels need the folder
+            patch.setattr(KernelPaths, 'remove', lambda paths: None)  # others need it
             await kernel.stop()
         return ''.join(o.get('text', '') or o.evalue for o in ran.outputs).strip()
 
@@ -179,10 +177,7 @@ def test_a_room_reaches_nothing_outside_by_network(shared_sandbox, inside):
         )
         outside = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
         words = outside.stdout.split()
-        assert (words[0], words[2]) == (
-            'reached',
-            'reached',
-        )  # outside, the same code reaches both
+        assert (words[0], words[2]) == ('reached', 'reached')  # from outside
 
 
 NUMBERS = {

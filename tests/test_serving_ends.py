@@ -114,7 +114,7 @@ def test_grade_may_run_beside_serve(tmp_path, inbound):
         process.terminate()
         process.wait(timeout=60)
         process.stdout.close()
-    serve_here(course, inbound)  # what came in before another one may not have been looked at yet
+    serve_here(course, inbound)  # some entries may not have been looked at yet
     assert others
     refused = {row.reason for row in others if not row.stored}
     assert refused <= {f'not graded, the grader failed: {REPLACED_MEANWHILE}'}

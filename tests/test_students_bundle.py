@@ -116,7 +116,7 @@ def test_lab_serves_the_lessons_and_the_tools_run_on_a_fresh_machine(students, f
     ], run.stderr
     assert doctor.startswith('usage: topic_doctor')
     assert where.startswith(str(students))
-    # the same on a lesson: its set-up cells and its checks find all that they import
+    # a lesson's set-up cells and its checks find all that they import
     program = 'import my_robot_basics.checks, my_robot_basics.live, nbgrader.validator'
     subprocess.run([students / '.venv/bin/python', '-c', program], env=fresh, check=True)
 
