@@ -27,18 +27,16 @@ ORDINARY = {
     'test_kernels::test_a_cell_comes_to_its_end': ALL,
     'test_kernel_exits::test_only_what_can_be_shown_is_the_students': ALL,
     'test_rooms_hostile::test_only_the_literal_of_one_string_is_read': ALL,
-    'test_checks_delivery_experiment::test_name_and_type_decide': ALL,
+    'test_checks_delivery_experiment::test_messages_arrive_only_if_topic_name_and_type_match': ALL,
     'test_sample_class::test_a_sample_earns_what_it_should_for_the_reason_that_it_should': ALL,
     'test_readme::test_links_and_pictures_lead_to_existing_files': ALL,
     # each lesson is also run by nbval and by Validate
     'test_lessons_run::test_an_unanswered_lesson_fails_in_its_checks_alone_and_says_what_is_missing': (  # noqa: E501
         r'03_publisher'
     ),
-    'test_browser::test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check': (
-        r'02_joint_state'
-    ),
-    'test_attacks::test_an_attack_earns_what_its_honest_work_does': ATTACKS,
-    'test_attacks::test_an_attack_brings_nothing_hidden_back': ATTACKS,
+    'test_browser::test_run_all_runs_an_unanswered_lesson_to_its_end': r'02_joint_state',
+    'test_attacks::test_an_attack_earns_only_the_points_of_its_honest_work': ATTACKS,
+    'test_attacks::test_an_attack_reveals_neither_hidden_tests_nor_the_seed': ATTACKS,
     'test_kernel_exits::test_a_kernel_that_is_ended_from_outside_is_no_zero': (
         r'forked-in a cell-kill'
     ),
@@ -52,24 +50,26 @@ ORDINARY = {
     'test_checks_sampling::test_a_wrong_rate_fails': r'a_little_fast-.*',
     'test_checks_sampling::test_honest_nodes_that_are_no_plain_timers_pass': r'sleep_loop-.*',
     # one right and one wrong node for each check of an action, a service, a parameter
-    'test_checks_actions::test_who_serves_right_passes_in_whatever_way': r'MoveArmServer',
-    'test_checks_actions_wrong::test_a_mistake_fails_its_check_alone_with_the_cause': (
+    'test_checks_actions::test_each_correct_action_server_passes': r'MoveArmServer',
+    'test_checks_actions_wrong::test_a_mistake_fails_the_expected_checks_and_names_its_cause': (
         r'NoFeedback-.*'
     ),
-    'test_checks_action_servers::test_who_sends_right_passes_in_whatever_way': r'MoveArmClient',
-    'test_checks_action_servers_wrong::test_a_wrong_outcome_is_named': r'AlwaysSucceeded-.*',
-    'test_checks_action_servers_wrong::test_a_wrong_cancel_is_named_and_outcomes_are_right': (
+    'test_checks_action_servers::test_each_correct_way_to_send_goals_passes': r'MoveArmClient',
+    'test_checks_action_servers_wrong::test_a_wrong_outcome_fails_with_its_cause': (
+        r'AlwaysSucceeded-.*'
+    ),
+    'test_checks_action_servers_wrong::test_a_wrong_cancel_fails_only_the_check_of_cancels': (
         r'NeverCancels-.*'
     ),
-    'test_checks_player::test_who_plays_right_passes_in_whatever_way': r'Usual|Callbacks',
-    'test_checks_player::test_what_is_wrong_is_named': (
+    'test_checks_player::test_each_correct_way_to_visit_targets_passes': r'Usual|Callbacks',
+    'test_checks_player::test_each_wrong_program_fails_with_its_cause': (
         r'StopsAtTheFirstUnreachable|SendsAllGoalsAtOnce|CallsInACallback'
     ),
     'test_checks_services::test_a_wrong_solution_is_named': r'(Degrees|Swapped)-.*',
-    'test_checks_services::test_who_answers_right_passes_in_whatever_way': r'IKService|Coroutine',
-    'test_checks_servers::test_who_asks_right_passes_in_whatever_way': r'IKClient',
+    'test_checks_services::test_each_correct_service_passes': r'IKService|Coroutine',
+    'test_checks_servers::test_each_correct_way_to_call_a_service_passes': r'IKClient',
     'test_checks_wrong_clients::test_what_is_wrong_is_named': r'(ElbowDown|AsksNobody)-.*',
-    'test_checks_waiting_clients::test_who_waits_inside_a_callback_is_told': r'Calls',
+    'test_checks_waiting_clients::test_waiting_inside_a_callback_fails_with_the_cause': r'Calls',
     'test_doctor_service_faults::test_a_client_that_blocks_its_own_executor': r'call',
     'test_doctor_service_healthy::test_an_honest_client_of_a_quick_and_of_a_slow_server': (
         r'add_done_callback-2\.0'
@@ -78,14 +78,18 @@ ORDINARY = {
     'test_checks_wrong_clients::test_who_publishes_more_than_the_response_is_told': (
         r'BothBranches-.*'
     ),
-    'test_checks_waiting_clients::test_who_never_gets_an_answer_is_told_why': r'Calls',
+    'test_checks_waiting_clients::test_a_client_that_never_gets_an_answer_fails_with_the_cause': (
+        r'Calls'
+    ),
     'test_doctor_actions::test_what_becomes_of_a_goal_is_told': r'Forgets-.*',
     'test_doctor_actions::test_each_state_in_which_a_goal_stands_still_has_its_line': (
         r'executing-.*'
     ),
-    'test_checks_actions_absent::test_a_missing_server_is_looked_for': r'arguments0-.*',
-    'test_checks_services::test_a_missing_server_is_looked_for': r'arguments0-.*',
-    'test_package::test_colcon_builds_what_the_ament_index_finds': r'options0',
+    'test_checks_actions_absent::test_a_missing_action_server_fails_with_its_likely_cause': (
+        r'arguments0-.*'
+    ),
+    'test_checks_services::test_a_missing_server_fails_with_its_likely_cause': r'arguments0-.*',
+    'test_package::test_the_ament_index_finds_each_node_of_a_colcon_build': r'options0',
     'test_sandbox::test_only_a_small_disk_can_be_written_to': r'forked',
     # the same commands with other options
     'test_ros2_action::test_prints_what_ros2cli_prints': r'[a-z]+( [^-\s]\S*)*',
@@ -104,7 +108,7 @@ ORDINARY = {
     ),
     'test_ros2_streams::test_what_cannot_be_done_is_said_in_a_sentence': r'(echo|hz|bw) .*',
     # one lesson, one page
-    'test_accessibility::test_a_released_lesson': r'03_publisher/.*|index\.ipynb',
+    'test_accessibility::test_a_released_lesson_is_accessible': r'03_publisher/.*|index\.ipynb',
     # the same fault, or the same kind of end, in another form
     'test_doctor_faults::test_a_wrong_line_is_named_first_and_fixed': r'best effort',
     'test_doctor_healthy::test_half_a_dozen_healthy_systems': r'1',
@@ -130,23 +134,29 @@ ORDINARY = {
         r'never_returns'
     ),
     'test_checks_topics::test_a_wrong_message_fails': r'Degrees-.*',
-    'test_checks_topics::test_a_notebook_that_does_not_say_is_waited_for': r'None',
-    'test_checks_logs::test_a_near_miss_is_told_what_is_missing': r'ik_one_branch-.*',
-    'test_checks_relays::test_a_monitor_passes_whatever_it_offers_and_nothing_is_said': (
+    'test_checks_topics::test_an_unusable_reply_counts_as_an_existing_endpoint': r'None',
+    'test_checks_logs::test_a_near_miss_fails_with_its_fault': r'ik_one_branch-.*',
+    'test_checks_relays::test_a_monitor_passes_silently_with_any_offered_qos_profile': (
         r'RELIABLE VOLATILE'
     ),
-    'test_checks_relays_lost::test_each_message_comes_out_at_once_and_once': r'Lags-.*',
+    'test_checks_relays_lost::test_a_relay_that_loses_delays_or_repeats_messages_fails': (
+        r'Lags-.*'
+    ),
     'test_kernel_exits::test_a_node_that_is_ended_from_outside_is_no_zero': r'forked',
-    'test_checks_parameters::test_a_mistake_with_the_rate_fails_that_check_alone': (
+    'test_checks_parameters::test_a_mistake_with_the_rate_fails_only_the_check_of_the_rate': (
         r'OneBehind-.*'
     ),
-    'test_checks_parameters::test_a_mistake_with_refusals_fails_that_check_alone': (
+    'test_checks_parameters::test_a_mistake_with_refusals_fails_only_the_check_of_refusals': (
         r'Corrects-.*'
     ),
-    'test_checks_node_commands::test_each_mistake_is_named': r'-r __ns:=/right',
-    'test_checks_stamps::test_the_computers_clock_fails_on_both': r'WallStamp-simulated',
-    'test_checks_relays::test_a_message_of_which_a_field_was_changed_does_not_pass': r'Stamps-.*',
-    'test_checks_relays::test_a_subscription_that_asks_for_too_much_is_named': r'10-.*',
+    'test_checks_node_commands::test_each_mistake_in_a_command_line_is_named': r'-r __ns:=/right',
+    'test_checks_stamps::test_stamps_of_the_computers_clock_fail_on_either_clock': (
+        r'WallStamp-simulated'
+    ),
+    'test_checks_relays::test_a_message_with_a_changed_field_fails_and_the_field_is_named': (
+        r'Stamps-.*'
+    ),
+    'test_checks_relays::test_a_subscription_with_an_incompatible_qos_profile_is_named': r'10-.*',
     'test_checks_clock::test_a_timer_is_judged_exactly_on_the_robots_clock': r'five_hz-.*',
     'test_checks_clock::test_a_node_is_alive_on_wall_time_after_a_check': r'five_hz',
     'test_checks_clock::test_a_node_is_alive_after_a_check_that_was_cut_short': (
@@ -172,9 +182,13 @@ ORDINARY = {
         r'a publisher without a stamp'
     ),
     'test_doctor_faults::test_a_publisher_out_of_reach': r'environment1-.*',
-    'test_checks_actions_nowhere::test_who_gets_nowhere_is_told_why': r'NeverEnds-.*',
+    'test_checks_actions_nowhere::test_an_arm_that_gets_nowhere_fails_with_the_cause': (
+        r'NeverEnds-.*'
+    ),
     'test_checks_parameters::test_an_honest_way_passes': r'Adjustable',
-    'test_checks_stamps::test_the_nodes_clock_passes_and_is_given_back': r'SteadyClock',
+    'test_checks_stamps::test_stamps_of_the_nodes_clock_pass_and_use_sim_time_is_reset': (
+        r'SteadyClock'
+    ),
     'test_checks_topics::test_silence_is_explained': r'callback_raises-.*',
     'test_testing::test_a_file_that_cannot_be_imported_is_named_and_not_run_again': (
         r'def test_a.*'

@@ -82,14 +82,14 @@ def scrolls_sideways(page):
 
 
 @pytest.mark.slow
-def test_axe_finds_what_is_wrong(page):
+def test_axe_finds_an_image_without_alternative_text(page):
     # or the tests below would find nothing in anything
     html = '<html lang="en"><title>Arm</title><main><h1>Arm</h1><img src="arm.png"></main></html>'
     assert [rule for rule, *_ in serious(page, html)] == ['image-alt']
 
 
 @pytest.mark.parametrize('path', LESSONS, ids=lambda p: str(p.relative_to(RELEASED)))
-def test_a_released_lesson(page, path):
+def test_a_released_lesson_is_accessible(page, path):
     html, _ = HTMLExporter().from_notebook_node(nbformat.read(path, as_version=4))
     assert serious(page, html) == []
     assert NO_WORDS not in html
@@ -97,7 +97,7 @@ def test_a_released_lesson(page, path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('name', ['03_publisher-fail-1hz', '03_publisher-zero-not_json'])
-def test_a_page_of_feedback_and_the_report_of_a_run(page, dark_phone, tmp_path, name):
+def test_feedback_and_the_report_of_a_run_are_accessible(page, dark_phone, tmp_path, name):
     course = Course(gradebook=tmp_path)
     rows = grade(course, [name])
     write_feedback(course)

@@ -56,11 +56,11 @@ class Machine:
         ([0.1, 0.9, 0.1], [4, 6, 5, 6]),
     ],
 )
-def test_more_get_in_while_processors_stand_idle(monkeypatch, shares, inside):
+def test_more_submissions_are_let_in_while_processors_are_idle(monkeypatch, shares, inside):
     assert asyncio.run(Machine(monkeypatch).after_each(*shares)) == inside
 
 
-def test_a_change_shows_before_the_next_one(monkeypatch):
+def test_the_number_of_submissions_changes_once_in_each_look_interval(monkeypatch):
     machine = Machine(monkeypatch)
 
     async def main():
@@ -70,12 +70,12 @@ def test_a_change_shows_before_the_next_one(monkeypatch):
     assert asyncio.run(main()) == [4, 4, 4, 6, 6, 6, 6, 8]
 
 
-def test_where_linux_does_not_tell_there_are_no_more_than_at_first(monkeypatch):
+def test_the_initial_limit_stays_if_linux_reports_no_load(monkeypatch):
     machine = Machine(monkeypatch, told_sec=0.0)
     assert asyncio.run(machine.after_each(0.0, 0.0)) == [4, 4, 4]
 
 
-def test_whoever_fails_or_is_called_off_leaves_the_place(monkeypatch):
+def test_a_submission_that_fails_frees_its_place(monkeypatch):
     machine = Machine(monkeypatch)
 
     async def main():

@@ -42,7 +42,7 @@ def wrongly_judged(answers: list[Answer], course: Course) -> list[str]:
     return wrong
 
 
-def test_each_answer_is_told_from_the_others():
+def test_each_answer_has_its_own_id_and_code():
     answers = all_answers()
     assert len({each.id for each in answers}) == len(answers) > 700
     assert {each.id for each in answers} >= ORDINARY
@@ -51,7 +51,7 @@ def test_each_answer_is_told_from_the_others():
         assert [code for code in codes if codes.count(code) > 1] == []
 
 
-def test_the_usual_answer_to_each_exercise_and_all_that_it_takes_are_there():
+def test_every_lesson_has_answers_and_the_first_of_each_exercise_earns_full_points():
     usual = [answers_to(exercise)[0] for exercise in {each.exercise for each in all_answers()}]
     packages = {'12_package'}  # whose answer is a folder: tests/changed_packages.py
     assert {each.lesson for each in usual} == set(LESSONS) - packages
@@ -67,7 +67,7 @@ def test_the_usual_answer_to_each_exercise_and_all_that_it_takes_are_there():
         (['wrong b: not so', 'earns 0 1', '+x = 3'], 'zip'),
     ],
 )
-def test_an_answer_that_is_written_wrongly_is_named(lines, why, tmp_path, monkeypatch):
+def test_an_error_in_a_table_of_answers_names_the_answer(lines, why, tmp_path, monkeypatch):
     head = 'lesson 00_two_link_arm\ncheck it 1'
     table = tmp_path / 'reaching.txt'
     table.write_text('\n\n'.join([head, 'right a: so\n+x = 2', '\n'.join(lines)]))
@@ -78,7 +78,7 @@ def test_an_answer_that_is_written_wrongly_is_named(lines, why, tmp_path, monkey
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_telling_answers_are_judged_as_they_should_be(tmp_path):
+def test_selected_answers_get_the_expected_points_and_messages(tmp_path):
     answers = [each for each in all_answers() if each.id in ORDINARY]
     assert wrongly_judged(answers, Course(gradebook=tmp_path)) == []
 
@@ -87,5 +87,5 @@ def test_telling_answers_are_judged_as_they_should_be(tmp_path):
 @pytest.mark.starts
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize('exercise', sorted({each.exercise for each in all_answers()}))
-def test_every_answer_is_judged_as_it_should_be(exercise, tmp_path):
+def test_every_answer_gets_the_expected_points_and_messages(exercise, tmp_path):
     assert wrongly_judged(answers_to(exercise), Course(gradebook=tmp_path)) == []

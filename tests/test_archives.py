@@ -56,7 +56,7 @@ def said(archive, **allowance):
 
 
 @pytest.mark.parametrize('make', [zipped, tarred])
-def test_files_are_copied_and_told_by_their_paths(make, tmp_path):
+def test_files_are_unpacked_and_listed_by_their_paths(make, tmp_path):
     archive = make(tmp_path, ('ada/a.ipynb', b'one'), ('./Ångström/小明.py', b'two'))
     assert said(archive) == {'ada/a.ipynb': 'one', 'Ångström/小明.py': 'two'}
 
@@ -94,12 +94,12 @@ def test_a_path_that_leads_elsewhere_is_refused_and_the_next_file_is_read(
     assert fine.file.read_bytes() == b'good'
 
 
-def test_a_path_is_split_as_windows_writes_it(tmp_path):
+def test_backslashes_separate_folders_in_a_path(tmp_path):
     assert said(zipped(tmp_path, ('ada\\00_toy\\a.py', b'x'))) == {'ada/00_toy/a.py': 'x'}
 
 
 @pytest.mark.parametrize('flagged', [True, False])
-def test_a_name_in_utf8_is_read_whether_the_zip_says_so_or_not(flagged, tmp_path):
+def test_a_name_in_utf8_is_read_with_and_without_the_utf8_flag(flagged, tmp_path):
     name = 'Zoë/a.py' if flagged else 'Zoë/a.py'.encode().decode('cp437')
     archive = zipped(tmp_path, (name, b'x'))
     if not flagged:
@@ -151,7 +151,7 @@ def test_a_tar_s_links_and_devices_are_refused(kind, problem, tmp_path):
 
 
 @pytest.mark.parametrize('make', [zipped, tarred])
-def test_what_grows_too_large_is_not_unpacked(make, tmp_path, monkeypatch):
+def test_files_that_are_too_large_once_unpacked_are_refused(make, tmp_path, monkeypatch):
     monkeypatch.setattr(archives, 'MAX_FILE_BYTES', 1_000_000)
     bomb = ('bomb.py', b'\0' * 3_000_000)
     found = said(make(tmp_path, bomb, ('b.py', b'good')))
@@ -162,7 +162,7 @@ def test_what_grows_too_large_is_not_unpacked(make, tmp_path, monkeypatch):
     assert 'a bomb?' in bounded[-1].problem
 
 
-def test_a_zip_that_lies_about_a_size_writes_no_more_than_it_said(tmp_path):
+def test_a_zip_that_understates_a_size_is_reported_as_broken(tmp_path):
     archive = zipped(tmp_path, ('a.py', b'x' * 5_000_000))
     archive.write_bytes(
         archive.read_bytes().replace(struct.pack('<I', 5_000_000), struct.pack('<I', 7))
@@ -171,7 +171,7 @@ def test_a_zip_that_lies_about_a_size_writes_no_more_than_it_said(tmp_path):
 
 
 @pytest.mark.parametrize('make', [zipped, tarred])
-def test_too_many_files_are_not_read(make, tmp_path):
+def test_reading_stops_after_the_allowed_number_of_files(make, tmp_path):
     found = members(make(tmp_path, *((f'{i}.py', b'') for i in range(30))), files=10)
     assert len(found) == 11
     assert found[-1].parts == ()
@@ -191,7 +191,7 @@ def test_a_table_of_contents_that_claims_to_be_huge_is_not_read(tmp_path, monkey
 
 @pytest.mark.parametrize('name', ['x.zip', 'x.tar', 'x.tgz', 'x.tar.bz2', 'x.tar.xz'])
 @pytest.mark.parametrize('content', [b'', b'no archive', b'PK\x03\x04' + b'\0' * 600])
-def test_what_is_no_archive_is_said_to_be_broken(name, content, tmp_path):
+def test_a_file_that_is_not_an_archive_is_reported_as_broken(name, content, tmp_path):
     (tmp_path / name).write_bytes(content)
     (refused,) = members(tmp_path / name)
     assert refused.problem.startswith('broken: ')
@@ -199,7 +199,7 @@ def test_what_is_no_archive_is_said_to_be_broken(name, content, tmp_path):
 
 @pytest.mark.parametrize(('name', 'mode'), [('x.tar', 'w'), ('x.tgz', 'w:gz')])
 @pytest.mark.parametrize('kept', [0.2, 0.5, 0.9])
-def test_an_archive_cut_short_says_so_at_any_place(name, mode, kept, tmp_path):
+def test_a_truncated_tar_is_reported_as_broken(name, mode, kept, tmp_path):
     entries = [(f'{i}.py', bytes(range(256)) * 30) for i in range(20)]
     archive = tarred(tmp_path, *entries, name=name, mode=mode)
     whole = archive.read_bytes().rstrip(b'\0')
@@ -220,7 +220,7 @@ def test_a_damaged_file_does_not_keep_the_others_from_being_read(tmp_path):
     assert found['b.py'] == 'good'
 
 
-def test_a_tar_with_rubbish_in_the_middle_is_not_taken_for_a_whole_one(tmp_path):
+def test_a_tar_with_a_damaged_header_in_the_middle_is_reported_as_broken(tmp_path):
     archive = tarred(tmp_path, ('a.py', b'x' * 512), ('b.py', b'y'), name='x.tar', mode='w')
     content = bytearray(archive.read_bytes())
     content[1024:1536] = b'?' * 512
@@ -229,7 +229,7 @@ def test_a_tar_with_rubbish_in_the_middle_is_not_taken_for_a_whole_one(tmp_path)
     assert last.problem.startswith('broken')
 
 
-def test_an_encrypted_file_is_named(tmp_path):
+def test_an_encrypted_file_is_reported_and_the_next_one_is_read(tmp_path):
     archive = zipped(tmp_path, ('a.py', b'x'), ('b.py', b'y'))
     content = bytearray(archive.read_bytes())
     content[content.index(b'PK\x01\x02') + 8] |= 1
@@ -240,7 +240,7 @@ def test_an_encrypted_file_is_named(tmp_path):
 
 
 @pytest.mark.parametrize('number', [errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE])
-def test_a_machine_that_is_full_is_not_the_archive_s_fault(tmp_path, monkeypatch, number):
+def test_a_lack_of_space_or_files_is_not_blamed_on_the_archive(tmp_path, monkeypatch, number):
     def full(*_, **__):
         raise OSError(number, 'No space left on device')
 
@@ -251,7 +251,7 @@ def test_a_machine_that_is_full_is_not_the_archive_s_fault(tmp_path, monkeypatch
 
 
 @pytest.mark.parametrize('name', ['x.zip', 'x.tar', 'x.tgz', 'x.tar.xz'])
-def test_whatever_is_damaged_the_archive_is_to_blame_and_nothing_lies_elsewhere(name, tmp_path):
+def test_random_damage_is_reported_and_no_file_is_written_elsewhere(name, tmp_path):
     rolls = random.Random(name)
     content = [(f'a{i}/b{i}.py', rolls.randbytes(rolls.randrange(900))) for i in range(4)]
     mode = {'x.tar': 'w', 'x.tgz': 'w:gz', 'x.tar.xz': 'w:xz'}.get(name)
@@ -268,7 +268,7 @@ def test_whatever_is_damaged_the_archive_is_to_blame_and_nothing_lies_elsewhere(
     assert complaints
 
 
-def test_times_are_kept_where_they_make_sense(tmp_path):
+def test_times_of_files_are_kept_unless_they_are_impossible(tmp_path):
     late = tarfile.TarInfo('a.py')
     late.mtime = 1_700_000_000
     never = tarfile.TarInfo('b.py')

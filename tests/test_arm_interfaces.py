@@ -40,7 +40,7 @@ def wheel():
 # --- the wheel and its sources -------------------------------------------------------------------
 
 
-def test_the_wheel_is_made_from_the_sources_that_are_here(wheel):
+def test_the_wheel_is_up_to_date_with_its_sources(wheel):
     listed = subprocess.run(
         ['git', 'ls-files', '--cached', '--others', '--exclude-standard', '.'],
         cwd=PACKAGE,
@@ -55,7 +55,7 @@ def test_the_wheel_is_made_from_the_sources_that_are_here(wheel):
     assert written == ''.join(f'{digests[name]}  {name}\n' for name in sorted(digests)), REBUILD
 
 
-def test_it_holds_the_definitions_as_they_are(wheel):
+def test_the_wheel_contains_the_interface_definitions_unchanged(wheel):
     for name in (*INTERFACES, 'package.xml'):
         assert wheel[f'{SHARE}/{name}'] == (PACKAGE / name).read_bytes(), REBUILD
 
@@ -67,13 +67,13 @@ def test_cmake_makes_the_same_interfaces():
     assert sorted(str(path.relative_to(PACKAGE)) for path in found) == INTERFACES
 
 
-def test_its_name_says_what_it_runs_on(wheel):
+def test_the_wheels_name_states_python_abi_and_platform(wheel):
     assert WHEEL.name == f'arm_interfaces-{VERSION}-cp311-abi3-manylinux_2_28_x86_64.whl'
     modules = [name for name in wheel if name.startswith('arm_interfaces/') and '.so' in name]
     assert modules == ['arm_interfaces/arm_interfaces_s__rosidl_typesupport_c.abi3.so']
 
 
-def test_it_was_built_against_the_pinned_packages(wheel):
+def test_the_wheel_was_built_against_the_pinned_packages(wheel):
     text = wheel[f'arm_interfaces-{VERSION}.dist-info/METADATA'].decode()
     required = re.findall(r'^Requires-Dist: (.*)$', text, re.MULTILINE)
     pinned = set(re.findall(r'^\S+==\S+', (ROOT / 'environment.txt').read_text(), re.MULTILINE))
@@ -81,7 +81,7 @@ def test_it_was_built_against_the_pinned_packages(wheel):
     assert set(required) - pinned == set(), REBUILD
 
 
-def test_what_is_installed_is_the_wheel(wheel):
+def test_the_installed_files_are_those_of_the_wheel(wheel):
     installed = metadata.distribution('arm_interfaces')
     for name, content in wheel.items():
         if '.dist-info/' in name:
@@ -112,7 +112,7 @@ def unpacked(tmp_path_factory):
 
 @pytest.mark.starts
 @pytest.mark.skipif(not shutil.which('nm'), reason='this machine has no nm')
-def test_it_asks_for_nothing_that_an_older_system_lacks(unpacked):
+def test_the_wheels_libraries_need_no_newer_symbols_than_manylinux_2_28(unpacked):
     assert len(libraries(unpacked)) == 5
     for library in libraries(unpacked):
         for symbol in symbols(library, '--undefined-only'):
@@ -123,7 +123,7 @@ def test_it_asks_for_nothing_that_an_older_system_lacks(unpacked):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not (shutil.which('gcc') and shutil.which('nm')), reason='there is no gcc')
-def test_the_recipe_makes_what_is_in_the_wheel(wheel, unpacked, tmp_path):
+def test_the_recipe_reproduces_the_wheel(wheel, unpacked, tmp_path):
     environment = os.environ | {'AMENT_PREFIX_PATH': sys.prefix}
     subprocess.run([sys.executable, RECIPE, tmp_path], env=environment, check=True)
     (made,) = tmp_path.glob('*.whl')
@@ -151,7 +151,7 @@ def ours(names):
 
 
 @pytest.mark.starts
-def test_each_type_goes_to_and_fro():
+def test_each_interface_type_survives_a_round_trip():
     program = Path(__file__).with_name('round_trip.py')
     with own_domain():
         run = subprocess.run(
@@ -167,7 +167,7 @@ def test_each_type_goes_to_and_fro():
 
 
 @pytest.mark.starts
-def test_ros2_shows_it():
+def test_ros2_lists_and_shows_the_interfaces():
     shown = ros2('interface', 'show', 'arm_interfaces/srv/SolveIK')
     assert (shown.status, shown.err) == (0, '')
     assert 'geometry_msgs/Point target' in shown.out

@@ -116,14 +116,14 @@ def graded(request, tmp_path_factory):
     return grade_class(tmp_path_factory.mktemp('attacked'), names, backend)
 
 
-def test_each_attack_says_what_it_tries():
+def test_each_attack_describes_what_it_tries():
     for path in ANSWERS.values():
         assert ast.get_docstring(ast.parse(path.read_text(encoding='utf-8'))).endswith('.')
     assert all(inspect.getdoc(function) for function in OTHERS.values())
     assert len(NAMES) >= 40
 
 
-def test_each_attack_has_the_names_that_it_uses():
+def test_each_name_that_an_attack_uses_is_defined():
     """An attack that stops at a NameError would earn nothing only because it tries nothing."""
     missing = {}
     for name in ANSWERS:
@@ -137,7 +137,7 @@ def test_each_attack_has_the_names_that_it_uses():
 
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize('name', NAMES)
-def test_an_attack_earns_what_its_honest_work_does(graded, name):
+def test_an_attack_earns_only_the_points_of_its_honest_work(graded, name):
     stored = graded.rows[name].stored
     assert stored is not None, graded.rows[name].reason
     said = verdicts(graded.course, name, assignment_of(name))
@@ -148,7 +148,7 @@ def test_an_attack_earns_what_its_honest_work_does(graded, name):
 
 
 @pytest.mark.parametrize('name', NAMES)
-def test_an_attack_brings_nothing_hidden_back(graded, name):
+def test_an_attack_reveals_neither_hidden_tests_nor_the_seed(graded, name):
     assert CANARY not in graded.pages[name]
     (path,) = graded.course.folder('autograded', name, '').glob('*/*.ipynb')
     cells = nbformat.read(path, as_version=4).cells
@@ -157,33 +157,33 @@ def test_an_attack_brings_nothing_hidden_back(graded, name):
     assert graded.course.seed(TOY, name) not in told + graded.pages[name]
 
 
-def test_the_honest_get_what_is_theirs(graded):
+def test_honest_students_get_full_points_beside_attacks(graded):
     theirs = {n: row.stored.score for n, row in graded.rows.items() if n.startswith('honest-')}
     assert len(theirs) > (len(graded.rows) - len(theirs)) // EVERY
     assert theirs == {n: FULL[ROBOT if n == 'honest-robot' else TOY] for n in theirs}
 
 
-def test_the_scores_hold_no_more_points_than_there_are(graded):
+def test_exported_scores_stay_within_their_maximum_and_leak_nothing(graded):
     assert CANARY not in graded.scores
     rows = list(csv.DictReader(graded.scores.splitlines()))
     assert {float(row['max_score']) for row in rows} == {1.0, 2.0, 3.0}
     assert [r for r in rows if r['score'] and float(r['score']) > float(r['max_score'])] == []
 
 
-def test_nothing_of_an_attack_is_left(graded):
+def test_attacks_leave_no_file_process_or_connection(graded):
     assert graded.knocks == 0
     assert [name for name in LEFT if Path('/tmp', name).exists()] == []
     left = [p for p in psutil.process_iter(['cmdline']) if '86421' in (p.info['cmdline'] or ())]
     assert left == []
 
 
-def test_nothing_runs_in_the_instructors_browser(graded):
+def test_html_of_an_attack_is_escaped_in_the_feedback(graded):
     page = graded.pages['html_and_escapes']
     assert 'alert' in page  # it is shown, as text
     assert re.findall(r'<script|<img src=x|<svg[^>]*>.*alert|\x1b|\u202e', page) == []
 
 
-def test_the_attacks_are_real(tmp_path):
+def test_some_attacks_succeed_without_a_sandbox(tmp_path):
     """Some attacks, run without a sandbox on files that they may have: each does what it says."""
     stolen = tmp_path / 'left.txt'
     stolen.write_text(CANARY)
@@ -214,7 +214,7 @@ def run(code, **environment):
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize('repetition', range(5))
-def test_it_comes_to_the_same_each_time_and_with_all_the_patience_that_there_is(
+def test_repeated_grading_with_the_usual_time_limits_gives_the_same_scores(
     tmp_path, graded, repetition
 ):
     again = grade_class(tmp_path, NAMES, Workers(in_flight=8))

@@ -10,7 +10,7 @@ GB = 2**30
     ('most', 'left'),
     [('max', 10 * GB), (f'{4 * GB}', 2 * GB), (f'{2 * GB}', 0), (f'{99 * GB}', 10 * GB)],
 )
-def test_a_container_may_have_less_than_the_machine(tmp_path, monkeypatch, most, left):
+def test_available_memory_is_limited_by_the_cgroup(tmp_path, monkeypatch, most, left):
     machine = psutil.virtual_memory()._replace(available=10 * GB)
     monkeypatch.setattr(psutil, 'virtual_memory', lambda: machine)
     assert available_bytes(tmp_path) == 10 * GB

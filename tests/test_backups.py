@@ -32,13 +32,13 @@ def backups(course):
     return sorted((course.gradebook / 'backups').iterdir())
 
 
-def test_without_a_database_there_is_nothing_to_copy(course):
+def test_no_backup_is_made_without_a_database(course):
     assert back_up(course) is None
     bring_in_order(course)
     assert not list(course.gradebook.iterdir())
 
 
-def test_what_is_there_already_is_not_copied_again(course):
+def test_an_unchanged_database_is_not_backed_up_again(course):
     write(course, 1)
     first = back_up(course)
     assert back_up(course) == first
@@ -48,7 +48,7 @@ def test_what_is_there_already_is_not_copied_again(course):
     assert [things(path) for path in backups(course)] == [[1], [1, 2]]
 
 
-def test_only_the_newest_are_kept(course):
+def test_only_the_newest_backups_are_kept(course):
     for number in range(KEPT + 3):
         write(course, number)
         back_up(course)
@@ -68,7 +68,7 @@ def test_a_backup_is_restored_by_copying_it(course):
     assert things(course.database) == [1]
 
 
-def test_damage_within_is_found_before_it_is_copied(course):
+def test_a_damaged_database_is_refused_and_not_backed_up(course):
     write(course, 1)
     with closing(sqlite3.connect(course.database)) as database:
         database.executemany('INSERT INTO some VALUES (?)', [['x' * 500]] * 200)

@@ -74,12 +74,12 @@ def advice(block, monkeypatch, *, container=True):
     return remedies.remedy()
 
 
-def test_where_nothing_is_missing_nothing_is_named():
+def test_nothing_is_reported_on_a_machine_that_allows_sandboxes():
     assert said() == ''
     assert works()
 
 
-def test_dockers_default_profile_is_named(default, monkeypatch):
+def test_dockers_default_profile_is_reported_as_the_cause(default, monkeypatch):
     assert not works(*UNDER, default)
     assert said(*UNDER, default) == 'filter unshare EPERM'
     text = advice('filter unshare EPERM', monkeypatch)
@@ -88,7 +88,7 @@ def test_dockers_default_profile_is_named(default, monkeypatch):
     assert 'SystemCallFilter=' in advice('filter unshare EPERM', monkeypatch, container=False)
 
 
-def test_our_profile_is_enough_and_has_nothing_to_spare(tmp_path):
+def test_our_profile_allows_sandboxes_and_needs_each_call_that_it_adds(tmp_path):
     assert works(*UNDER, PROFILE)
     assert said(*UNDER, PROFILE) == ''
     for name in script().ADDED:
@@ -100,7 +100,7 @@ def test_our_profile_is_enough_and_has_nothing_to_spare(tmp_path):
 @pytest.mark.parametrize(
     'masked', [('--ro-bind', '/proc/sys', '/proc/sys'), ('--tmpfs', '/proc/fs')]
 )
-def test_a_masked_proc_is_named(masked, monkeypatch):
+def test_a_masked_proc_is_reported(masked, monkeypatch):
     assert said(*APART, *masked) == 'proc EPERM'
     assert not works(*APART, *masked)
     mounts = f'40 22 0:1 / {masked[-1]} ro - proc proc ro'
@@ -112,14 +112,14 @@ def test_a_masked_proc_is_named(masked, monkeypatch):
     assert 'seccomp' not in text
 
 
-def test_user_namespaces_that_are_used_up_are_named(monkeypatch):
+def test_an_exhausted_limit_of_user_namespaces_is_reported(monkeypatch):
     none_left = (*APART, '--unshare-user', '--disable-userns')
     assert said(*none_left) == 'user ENOSPC'
     assert not works(*none_left)
     assert 'user.max_user_namespaces=10000' in advice('user ENOSPC', monkeypatch)
 
 
-def test_apparmor_is_named(monkeypatch):
+def test_apparmor_is_reported_as_the_cause(monkeypatch):
     monkeypatch.setattr(remedies, '_read', lambda path: 'docker-default (enforce)')
     text = advice('mounting EACCES', monkeypatch)
     assert text.startswith('docker-default (enforce) forbids what bubblewrap does first')
@@ -127,7 +127,7 @@ def test_apparmor_is_named(monkeypatch):
     assert 'seccomp' not in text
 
 
-def test_the_systems_own_setting_is_named_before_a_profile(monkeypatch):
+def test_a_restrictive_sysctl_is_reported_before_an_apparmor_profile(monkeypatch):
     monkeypatch.setattr(remedies, '_first_block', lambda: 'uid_map EACCES')
     monkeypatch.setattr(
         remedies, '_setting', lambda name: '1' if 'apparmor_restrict' in name else ''
@@ -135,14 +135,14 @@ def test_the_systems_own_setting_is_named_before_a_profile(monkeypatch):
     assert 'kernel.apparmor_restrict_unprivileged_userns=0' in remedies.remedy()
 
 
-def test_root_without_rights_is_told_to_be_an_ordinary_user(monkeypatch):
+def test_root_without_capabilities_is_advised_to_use_an_ordinary_user(monkeypatch):
     monkeypatch.setattr(os, 'geteuid', lambda: 0)
     monkeypatch.setattr(remedies, '_has_sys_admin', lambda: False)
     assert '--user 1000:1000' in advice('', monkeypatch)
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason='only root can lose what root has')
-def test_root_is_known_by_its_capabilities():
+def test_the_sys_admin_capability_of_root_is_detected():
     code = 'from grader.sandbox import remedies; print(remedies._has_sys_admin())'
     lose = ('setpriv', '--bounding-set', '-sys_admin', '--inh-caps', '-sys_admin')
     for command, found in ((), 'True'), (lose, 'False'):
@@ -152,7 +152,7 @@ def test_root_is_known_by_its_capabilities():
         assert run.stdout.strip() == found, run.stderr
 
 
-def test_the_profile_is_dockers_and_seven_calls_more():
+def test_our_profile_adds_seven_calls_to_dockers():
     made = script()
     profile = json.loads(PROFILE.read_text())
     allowed = set(profile['syscalls'][0]['names'])

@@ -81,7 +81,7 @@ def opened(lab, page):
 
 
 @pytest.mark.slow
-def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
+def test_the_lab_opens_the_contents_page_and_renders_the_terms(page):
     expect(page.get_by_role('link', name='core terms')).to_be_visible()
     # a link would show it without our settings, too
     page.locator('.jp-DirListing-item', has_text='terms.md').dblclick()
@@ -89,7 +89,7 @@ def test_the_lab_opens_on_the_contents_and_shows_the_terms_to_readers(page):
 
 
 @pytest.mark.slow
-def test_the_contents_show_what_has_passed_and_what_has_changed_since(lab, page):
+def test_the_contents_page_shows_passed_and_since_changed_exercises(lab, page):
     name = '02_joint_state'
     notebook = answered(name, lab.folder / name)
     opened = f'{name}/{name}.ipynb'
@@ -135,7 +135,7 @@ def test_the_workspace_opens_in_the_file_browser(lab, page, monkeypatch):
 
 
 @pytest.mark.parametrize('name', LESSONS)
-def test_run_all_goes_through_an_unanswered_lesson_and_stops_at_no_check(opened, name):
+def test_run_all_runs_an_unanswered_lesson_to_its_end(opened, name):
     run_through(opened(name))
 
 
@@ -182,7 +182,7 @@ def drag_first_slider(lesson, cell, *, before):
 
 
 @pytest.mark.slow
-def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
+def test_validate_reports_a_wrong_answer_and_then_a_right_one(opened):
     lesson = opened('02_joint_state')
     lesson.type('to_joint_state', WRONG)
     said = lesson.validate()
@@ -198,7 +198,7 @@ def test_validate_says_what_is_wrong_and_then_that_all_is_right(opened):
 
 
 @pytest.mark.slow
-def test_validate_speaks_the_language_of_the_lesson(opened):
+def test_validate_reports_in_the_language_of_the_lesson(opened):
     lesson = opened('02_joint_state', 'zh_CN')
     lesson.type('to_joint_state', WRONG)
     button = lesson.page.locator('jp-button', has_text='Validate')
@@ -221,7 +221,7 @@ WAITING = """\
 
 
 @pytest.mark.slow  # the dialog is the same, and the grader's tests have these answers
-def test_validate_tells_a_client_that_waits_for_itself_from_one_that_does_not(opened):
+def test_validate_fails_only_the_client_that_waits_inside_a_callback(opened):
     lesson = opened('08_services')
     answers = {cell.id: cell.source for cell in solution('08_services').cells}
     lesson.type('ik_service', answers['ik_service'])
@@ -252,7 +252,7 @@ def test_the_doctor_draws_where_a_service_is_broken(opened):
 
 
 @pytest.mark.slow
-def test_validate_shows_what_it_does_and_ends_with_its_dialog(lab, opened):
+def test_validate_shows_its_progress_and_stops_if_its_dialog_is_closed(lab, opened):
     lesson = opened('03_publisher')
     endless = 'class KinematicsPublisher(Node):\n    def __init__(self):\n        while True: pass'
     lesson.type('five_hz', endless)
@@ -275,7 +275,7 @@ def validations(server):
 
 
 @pytest.mark.slow  # as in nbval, and in Validate
-def test_an_answer_passes_where_it_is_written(opened):
+def test_a_right_answer_passes_when_run_in_jupyterlab(opened):
     lesson = opened('03_publisher')
     answer = next(c for c in solution('03_publisher').cells if c.id == 'five_hz')
     lesson.command('notebook:run-cell', lesson.index('imports'))
@@ -289,7 +289,7 @@ def test_an_answer_passes_where_it_is_written(opened):
 
 
 @pytest.mark.slow
-def test_students_see_the_lessons_and_no_panel_of_instructors(opened):
+def test_students_see_validate_and_no_panels_for_instructors(opened):
     page = opened('02_joint_state').page
     expect(page.get_by_role('button', name='Validate')).to_be_visible()
     for words in ['Nbgrader', 'Create Assignment', 'Jupyter news']:

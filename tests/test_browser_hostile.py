@@ -189,7 +189,7 @@ def formgrader(course):
 
 
 @pytest.mark.slow
-def test_what_does_harm_is_seen(browser, tmp_path):
+def test_an_unescaped_page_is_seen_to_do_harm(browser, tmp_path):
     page = tmp_path / 'page.html'
     page.write_text(f'<!doctype html><body>{EVIL}{SVG}')
     harm = browser.harm_of(page.as_uri())
@@ -197,13 +197,13 @@ def test_what_does_harm_is_seen(browser, tmp_path):
     assert any('href=javascript' in each for each in harm)
 
 
-def test_a_page_of_feedback_does_nothing(browser, course):
+def test_a_page_of_feedback_runs_no_hostile_code(browser, course):
     (page,) = write_feedback(course)
     assert browser.harm_of(page.as_uri()) == []
     assert 'evil &lt;script&gt;' in browser.text()  # so it is shown
 
 
-def test_the_report_of_a_run_does_nothing(browser, course):
+def test_the_report_of_a_run_runs_no_hostile_code(browser, course):
     rows = [
         SubmissionOutcome(BY_NAME, TOY, None, f'{EVIL} <{BY_NAME}', 1.0),
         SubmissionOutcome(EVIL, EVIL, None, EVIL),
@@ -214,7 +214,7 @@ def test_the_report_of_a_run_does_nothing(browser, course):
 
 
 @pytest.mark.slow
-def test_the_formgrader_does_nothing(browser, course, formgrader):
+def test_the_formgrader_runs_no_hostile_code(browser, course, formgrader):
     with Gradebook(course.db_url) as gradebook:
         (submission,) = gradebook.notebook_submissions(TOY, TOY)
         number = submission.id

@@ -67,7 +67,7 @@ def names(path):
     return {name.removeprefix(f'{FOLDER}/') for name in entries(path)}
 
 
-def test_a_course_that_was_never_released_is_told_in_one_sentence(course, tmp_path):
+def test_bundling_an_unreleased_course_names_the_release_command(course, tmp_path):
     shutil.rmtree(course.root / 'notebooks')
     with pytest.raises(
         CourseError, match=r'no folder notebooks/: make it with \./course release$'
@@ -77,7 +77,9 @@ def test_a_course_that_was_never_released_is_told_in_one_sentence(course, tmp_pa
 
 
 @pytest.mark.parametrize('target', ['a folder', '/proc/x.zip', 'a file/x.zip'])
-def test_where_nothing_can_be_written_it_says_so_at_once(course, tmp_path, monkeypatch, target):
+def test_an_unwritable_target_is_reported_before_lessons_are_checked(
+    course, tmp_path, monkeypatch, target
+):
     late = 'grader.authoring.bundle.stale_or_leaking'
     monkeypatch.setattr(late, lambda course: pytest.fail('it was checked first'))
     (tmp_path / 'a folder').mkdir()
@@ -89,7 +91,7 @@ def test_where_nothing_can_be_written_it_says_so_at_once(course, tmp_path, monke
     assert sorted(each.name for each in tmp_path.iterdir()) == ['a file', 'a folder', 'course']
 
 
-def test_a_folder_that_appears_meanwhile_is_left(course, monkeypatch):
+def test_a_folder_that_appears_at_the_target_meanwhile_is_not_replaced(course, monkeypatch):
     shutil.rmtree(course.gradebook, ignore_errors=True)
     monkeypatch.setattr(
         'grader.authoring.bundle.stale_or_leaking', lambda course: course.gradebook.mkdir() or []
@@ -98,7 +100,7 @@ def test_a_folder_that_appears_meanwhile_is_left(course, monkeypatch):
         bundle(course, course.gradebook)
 
 
-def test_a_folder_that_is_not_there_yet_is_made(course, fresh_lessons, tmp_path):
+def test_a_missing_target_folder_is_made(course, fresh_lessons, tmp_path):
     bundle(course, tmp_path / 'new' / 'folder' / 'students.zip')
     assert [each.name for each in (tmp_path / 'new/folder').iterdir()] == ['students.zip']
 
@@ -106,7 +108,7 @@ def test_a_folder_that_is_not_there_yet_is_made(course, fresh_lessons, tmp_path)
 # --- what is in it -------------------------------------------------------------------------------
 
 
-def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_path):
+def test_a_bundle_contains_only_the_files_that_students_need(made, fresh_lessons, tmp_path):
     bundle(made, tmp_path / 'students.zip')
     found = names(tmp_path / 'students.zip')
     assert sorted({name.split('/')[0] for name in found}) == TOP
@@ -123,7 +125,7 @@ def test_it_holds_what_students_need_and_nothing_else(made, fresh_lessons, tmp_p
     assert {name for name in found if name.startswith(ours)} == set(tracked)
 
 
-def test_it_holds_each_edition(course, fresh_lessons, tmp_path):
+def test_a_bundle_contains_each_language_edition(course, fresh_lessons, tmp_path):
     catalogue = course.root / 'locale/zh_CN/LC_MESSAGES/students.po'
     catalogue.parent.mkdir(parents=True)
     catalogue.write_text('msgid "## How you work"\nmsgstr "## 怎样学习"\n', encoding='utf-8')
@@ -137,7 +139,7 @@ def test_it_holds_each_edition(course, fresh_lessons, tmp_path):
     assert '\n## 怎样学习\n' in (folder / 'README.zh_CN.md').read_text(encoding='utf-8')
 
 
-def test_a_catalogue_that_tells_what_no_program_does_is_refused(course, fresh_lessons, tmp_path):
+def test_a_catalogue_that_quotes_a_hidden_test_is_refused(course, fresh_lessons, tmp_path):
     catalogue = course.root / 'locale/zh_CN/LC_MESSAGES/checks.po'
     catalogue.parent.mkdir(parents=True)
     release(course)
@@ -154,7 +156,7 @@ def test_a_catalogue_that_tells_what_no_program_does_is_refused(course, fresh_le
         bundle(course, tmp_path / 'students.zip')
 
 
-def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp_path):
+def test_a_bundle_pins_only_packages_that_students_need(made, fresh_lessons, tmp_path):
     bundle(made, tmp_path / 'students.zip')
     pins = (unpacked(tmp_path / 'students.zip', tmp_path) / 'environment.txt').read_text()
     assert (ROOT / 'environment.txt').read_text().startswith(pins)
@@ -172,14 +174,14 @@ def test_it_asks_for_nothing_that_only_the_course_needs(made, fresh_lessons, tmp
         assert f'\n{needed}==' in pins
 
 
-def test_without_its_line_nobody_knows_what_students_need(course, fresh_lessons, tmp_path):
+def test_pins_without_the_separating_line_are_refused(course, fresh_lessons, tmp_path):
     pins = course.root / 'environment.txt'
     pins.write_text(pins.read_text().replace('# --- what only', '# what only'))
     with pytest.raises(CourseError, match=r'environment\.txt has no line'):
         bundle(course, tmp_path / 'students.zip')
 
 
-def test_only_the_script_is_a_program(made, fresh_lessons, tmp_path):
+def test_only_the_course_script_is_executable_in_a_bundle(made, fresh_lessons, tmp_path):
     bundle(made, tmp_path / 'students.zip')
     modes = {
         name.removeprefix(f'{FOLDER}/'): info.external_attr >> 16
@@ -205,9 +207,7 @@ def test_the_same_files_give_the_same_bytes(made, course, fresh_lessons, tmp_pat
     assert (tmp_path / 'one.zip').read_bytes() == (tmp_path / 'two.zip').read_bytes()
 
 
-def test_a_new_version_that_is_unpacked_over_the_old_one_is_what_runs(
-    course, fresh_lessons, tmp_path
-):
+def test_a_new_bundle_unpacked_over_an_old_one_runs_the_new_code(course, fresh_lessons, tmp_path):
     module = 'my_robot_basics/my_robot_basics/units.py'
     for value in 1, 2:
         (course.root / module).write_text(f'VALUE = {value}\n')
@@ -223,7 +223,7 @@ def test_a_new_version_that_is_unpacked_over_the_old_one_is_what_runs(
 
 
 @pytest.mark.starts  # to release takes long
-def test_the_command_tells_what_it_made_and_what_it_left_out(
+def test_the_bundle_command_reports_the_zip_and_the_files_left_out(
     course, tmp_path, capsys, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
@@ -277,7 +277,7 @@ PLACES = [
 @pytest.mark.parametrize('place', PLACES, ids=lambda place: place.__name__)
 @pytest.mark.parametrize('secret', [CANARY, '### BEGIN HIDDEN TESTS', '### BROKEN: x = 1'])
 @pytest.mark.usefixtures('fresh_lessons')
-def test_a_secret_anywhere_is_found_and_the_former_zip_stays(secret, place, course, tmp_path):
+def test_a_secret_in_any_file_is_refused_and_the_former_zip_stays(secret, place, course, tmp_path):
     (tmp_path / 'students.zip').write_bytes(b'former')
     place(course, secret)
     with pytest.raises(CourseError, match='no bundle was made') as refusal:
@@ -289,7 +289,7 @@ def test_a_secret_anywhere_is_found_and_the_former_zip_stays(secret, place, cour
     assert sorted(path.name for path in tmp_path.iterdir()) == ['course', 'students.zip']
 
 
-def test_an_answer_of_two_lines_in_the_package_is_no_accident(course, fresh_lessons, tmp_path):
+def test_two_lines_of_an_answer_in_the_package_are_refused(course, fresh_lessons, tmp_path):
     module = 'my_robot_basics/my_robot_basics/hello_node.py'
     in_a_file(module)(course, ANSWER)
     bundle(course, tmp_path / 'students.zip')  # one line may stand in any program
@@ -315,14 +315,14 @@ def test_an_answer_of_two_lines_in_the_package_is_no_accident(course, fresh_less
     ],
 )
 @pytest.mark.usefixtures('fresh_lessons')
-def test_what_is_missing_is_named(name, course, tmp_path):
+def test_a_missing_file_is_named(name, course, tmp_path):
     (course.root / name).unlink()
     with pytest.raises(CourseError, match=f'no bundle was made: .*{re.escape(name)} is '):
         bundle(course, tmp_path / 'students.zip')
 
 
 @pytest.mark.usefixtures('fresh_lessons')
-def test_what_is_on_no_list_is_named(course, tmp_path):
+def test_unlisted_files_and_links_are_named(course, tmp_path):
     (course.root / 'my_robot_basics/my_robot_basics/notes.txt').touch()
     (course.root / 'LICENSE').unlink()
     (course.root / 'LICENSE').symlink_to('/etc/passwd')
@@ -336,7 +336,7 @@ def test_what_is_on_no_list_is_named(course, tmp_path):
 
 
 @pytest.mark.starts  # to release takes long
-def test_a_stale_or_telling_lesson_is_not_bundled(course, tmp_path):
+def test_a_stale_or_leaking_lesson_is_not_bundled(course, tmp_path):
     lesson_cell(course, CANARY)
     (course.root / f'notebooks/{TOY}/more.txt').touch()
     with pytest.raises(CourseError) as refusal:

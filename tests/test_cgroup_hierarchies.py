@@ -108,7 +108,7 @@ def test_a_container_sees_its_own_part_of_version_1(machine):
 
 
 @pytest.mark.parametrize('lacking', ['memory', 'pids'])
-def test_version_1_is_of_no_use_without_the_controllers_that_matter(machine, lacking):
+def test_version_1_is_refused_without_memory_or_pids_controller(machine, lacking):
     proc = machine('4:memory:/\n3:pids:/\n', V1)
     for name in {'memory', 'pids'} - {lacking}:
         (proc / name).mkdir()
@@ -134,7 +134,7 @@ def test_a_delegated_scope_is_used_with_its_processes_moved_aside(
     assert set((scope / 'cgroup.subtree_control').read_text().split()) == {'memory', 'pids', 'cpu'}
 
 
-def test_who_was_moved_aside_uses_the_same_place(machine, switches):
+def test_a_process_moved_aside_finds_the_same_scope_again(machine, switches):
     proc = machine(f'0::/run-7.scope/{GRADERS}\n', V2, root=False)
     tree(proc / 'unified' / 'run-7.scope' / GRADERS, processes='41')
     tree(proc / 'unified' / 'run-7.scope')
@@ -142,14 +142,14 @@ def test_who_was_moved_aside_uses_the_same_place(machine, switches):
     assert switches == []
 
 
-def test_a_container_gives_all_of_its_own(machine, switches):
+def test_a_container_uses_its_whole_cgroup_tree(machine, switches):
     proc = machine('0::/\n', V2)
     tree(proc / 'unified', processes='1 7')
     assert set(found(proc).folders.values()) == {proc / 'unified'}
     assert [process for _, process in switches] == ['1', '7']
 
 
-def test_root_takes_the_whole_tree_where_no_systemd_rules(machine, switches):
+def test_root_uses_the_whole_tree_without_systemd(machine, switches):
     proc = machine('0::/some/daemon\n', V2, systemd=False)
     tree(proc / 'unified', processes='1 7', is_root=True)
     tree(proc / 'unified' / 'some' / 'daemon', processes='9')
@@ -157,7 +157,7 @@ def test_root_takes_the_whole_tree_where_no_systemd_rules(machine, switches):
     assert switches == []
 
 
-def test_what_systemd_has_not_delegated_is_left_alone(machine, switches):
+def test_a_cgroup_that_systemd_has_not_delegated_is_refused(machine, switches):
     proc = machine('0::/user.slice/session-3.scope\n', V2)
     tree(proc / 'unified', is_root=True)
     tree(proc / 'unified' / 'user.slice' / 'session-3.scope', processes='41')
@@ -166,14 +166,14 @@ def test_what_systemd_has_not_delegated_is_left_alone(machine, switches):
     assert switches == []
 
 
-def test_a_place_without_the_memory_controller_is_of_no_use(machine, switches):
+def test_a_cgroup_without_the_memory_controller_is_refused(machine, switches):
     proc = machine('0::/\n', V2)
     tree(proc / 'unified', controllers='hugetlb pids')
     with pytest.raises(NoCgroups, match='no controller for memory'):
         found(proc)
 
 
-def test_a_machine_without_any_says_so(machine):
+def test_a_machine_without_cgroups_is_reported(machine):
     with pytest.raises(NoCgroups, match='this Linux has no cgroups'):
         found(machine('', []))
     module._found.cache_clear()
@@ -201,7 +201,7 @@ def nowhere(machine, monkeypatch):
     return monkeypatch
 
 
-def test_systemd_gives_a_scope_of_the_users_own(nowhere):
+def test_the_command_runs_in_a_delegated_systemd_user_scope(nowhere):
     nowhere.setattr(systemd_scopes.subprocess, 'run', answering(0))
     command = scoped(('python', 'x'))
     assert command[:3] == ('systemd-run', '--user', '--scope')
@@ -210,12 +210,12 @@ def test_systemd_gives_a_scope_of_the_users_own(nowhere):
     assert len({scoped(('python', 'x')) for _ in range(3)}) == 3  # each has a unit of its own
 
 
-def test_where_systemd_refuses_the_command_is_as_it_was(nowhere):
+def test_the_command_is_unchanged_if_systemd_refuses_a_scope(nowhere):
     nowhere.setattr(systemd_scopes.subprocess, 'run', answering(1))
     assert scoped(('python', 'x')) == ('python', 'x')
 
 
-def test_where_cgroups_can_be_had_no_scope_is_asked_for(monkeypatch):
+def test_the_command_is_unchanged_if_cgroups_can_be_made(monkeypatch):
     monkeypatch.setattr(module, '_found', lambda proc: module.Hierarchies(1, {}))
     assert scoped(('python', 'x')) == ('python', 'x')
 
@@ -229,7 +229,9 @@ def test_where_cgroups_can_be_had_no_scope_is_asked_for(monkeypatch):
         ('xcgroup_memory=nosocket', ''),
     ],
 )
-def test_what_linux_was_told_not_to_count_is_told(tmp_path, monkeypatch, options, said):
+def test_kinds_of_memory_that_linux_does_not_count_are_reported(
+    tmp_path, monkeypatch, options, said
+):
     (tmp_path / 'cmdline').write_text(f'ro {options}\n')
     assert module._uncounted(tmp_path / 'cmdline') == said
     monkeypatch.setattr(module, '_uncounted', lambda: said)
@@ -242,7 +244,7 @@ def test_what_linux_was_told_not_to_count_is_told(tmp_path, monkeypatch, options
     [lambda: preprocessors._workers.__wrapped__(), lambda: dask_worker._workers.__wrapped__(1)],
     ids=['nbgrader autograde', 'dask worker'],
 )
-def test_whoever_grades_has_it_done_in_a_scope(monkeypatch, begin):
+def test_graders_start_their_workers_in_a_systemd_scope(monkeypatch, begin):
     monkeypatch.setattr(workers, 'scoped', lambda command: ('a scope', *command))
     monkeypatch.setattr('atexit.register', lambda end: None)
     begun = begin()

@@ -75,7 +75,7 @@ def pids(cgroup, controller='memory'):
 
 
 @pytest.mark.slow
-def test_a_kernel_and_all_that_it_starts_are_in_their_rooms_cgroup(loop, sandbox, kernels):
+def test_a_kernel_and_its_child_processes_are_in_the_rooms_cgroup(loop, sandbox, kernels):
     for room, kernel in kernels.items():
         cgroup = sandbox.cgroup(room)
         before = pids(cgroup)
@@ -113,7 +113,7 @@ for _ in range(500):
 
 
 @pytest.mark.parametrize('code', BOMBS.values(), ids=BOMBS)
-def test_memory_of_all_kinds_is_counted_and_only_the_room_pays(loop, monkeypatch, code):
+def test_memory_of_all_kinds_counts_against_the_limit_of_its_room_only(loop, monkeypatch, code):
     monkeypatch.setattr(module, 'ROOM_MEMORY_BYTES', LIMIT)
     sandbox, student = loop.run(opened())
     test = GradingKernel(room='test', domain_id=DOMAIN, paths=sandbox.paths('test'))
@@ -130,7 +130,7 @@ def test_memory_of_all_kinds_is_counted_and_only_the_room_pays(loop, monkeypatch
     assert rooms[1].memory_events() == MemoryEvents()
 
 
-def test_the_limits_are_those_of_the_table(sandbox):
+def test_a_rooms_cgroup_has_the_configured_limits(sandbox):
     cgroup = sandbox.cgroup('student')
     assert cgroup.memory_limit_bytes == ROOM_MEMORY_BYTES
     name = 'memory.max' if cgroup.version == 2 else 'memory.limit_in_bytes'
@@ -144,7 +144,7 @@ def test_the_limits_are_those_of_the_table(sandbox):
     assert weights == [one, 2 * one]  # a sandbox has twice that of a room, for it has two
 
 
-def test_nothing_is_left_of_a_sandbox_whoever_is_still_in_it(loop):
+def test_closing_a_sandbox_kills_its_processes_and_removes_its_cgroups(loop):
     sandbox = Sandbox(slot=next(SLOTS))
     loop.run(sandbox.open())
     folders = sandbox._cgroups.folders
@@ -164,7 +164,7 @@ def test_nothing_is_left_of_a_sandbox_whoever_is_still_in_it(loop):
     strangers.stdout.close()
 
 
-def test_a_command_that_can_not_join_does_not_run(sandbox):
+def test_a_command_that_cannot_join_its_cgroup_does_not_run(sandbox):
     cgroup = sandbox.cgroup('student')
     nowhere = {name: folder / 'nowhere' for name, folder in cgroup.folders.items()}
     command = [*joining(dataclasses.replace(cgroup, folders=nowhere)), 'echo', 'it ran']
@@ -173,7 +173,7 @@ def test_a_command_that_can_not_join_does_not_run(sandbox):
     assert 'nowhere' in done.stderr
 
 
-def test_cgroups_that_can_not_be_made_are_the_graders_failure(loop):
+def test_cgroups_that_cannot_be_made_are_reported_as_a_room_failure(loop):
     sandbox = Sandbox(slot=next(SLOTS))
     in_the_way = sandbox._cgroups.folders[0]
     in_the_way.mkdir()
@@ -198,7 +198,7 @@ asyncio.run(main())
 """
 
 
-def test_what_a_killed_grader_left_goes_with_the_next_ones_start(tmp_path):
+def test_cgroups_of_a_killed_grader_are_removed_by_the_next_sweep(tmp_path):
     with tempfile.TemporaryDirectory(prefix='mrb-test-') as temporary:
         command = [sys.executable, '-P', '-c', GRADER]
         with subprocess.Popen(
@@ -213,7 +213,7 @@ def test_what_a_killed_grader_left_goes_with_the_next_ones_start(tmp_path):
         assert not any(path.exists() for path in left)
 
 
-def test_only_processes_that_are_seen_are_killed(tmp_path):
+def test_a_process_of_another_pid_namespace_is_not_killed(tmp_path):
     # 0 stands for a process in another PID namespace; to kill 0 would be to kill this one
     (tmp_path / 'cgroup.procs').write_text('0\n')
     assert not remove_cgroup(tmp_path)

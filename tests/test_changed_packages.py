@@ -40,7 +40,7 @@ def wrongly_judged(changes: tuple[Change, ...], course: Course) -> list[str]:
     return wrong
 
 
-def test_each_package_is_another_one():
+def test_packages_differ_and_only_right_ones_earn_full_points():
     packages = [tuple(sorted(change.files().items())) for change in ALL]
     assert len(set(packages)) == len(ALL) == len({change.name for change in ALL})
     assert ALL[0].files() == ours()
@@ -51,7 +51,7 @@ def test_each_package_is_another_one():
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_telling_packages_are_judged_as_they_should_be(tmp_path):
+def test_selected_packages_get_the_expected_points_and_messages(tmp_path):
     changes = tuple(change for change in ALL if change.name in ORDINARY)
     assert wrongly_judged(changes, Course(gradebook=tmp_path)) == []
 
@@ -59,5 +59,5 @@ def test_telling_packages_are_judged_as_they_should_be(tmp_path):
 @pytest.mark.slow
 @pytest.mark.starts
 @pytest.mark.parametrize('kind', [RIGHT, WRONG, HOSTILE], ids=['right', 'wrong', 'hostile'])
-def test_every_package_is_judged_as_it_should_be(kind, tmp_path):
+def test_every_package_gets_the_expected_points_and_messages(kind, tmp_path):
     assert '\n'.join(wrongly_judged(kind, Course(gradebook=tmp_path))) == ''

@@ -19,7 +19,7 @@ def test_each_score_is_in_one_bar(scores, max_score, bars):
 
 
 @pytest.mark.parametrize('max_score', [12, 13, 20, 24, 25, 100, 1000])
-def test_there_are_never_too_many_bars_and_nobody_is_lost(max_score):
+def test_a_histogram_has_at_most_13_bars_and_counts_every_student(max_score):
     bars = histogram(range(max_score + 1), max_score)
     assert len(bars) <= 13
     assert sum(count for _, count in bars) == max_score + 1
@@ -36,6 +36,6 @@ def test_a_chart_says_in_words_what_it_shows_and_escapes_its_title():
     assert heights == [60, 0, 120]
 
 
-def test_a_share_is_as_long_as_it_says():
+def test_the_bar_of_a_share_has_the_width_of_its_value():
     assert 'aria-label="a quarter"' in share(0.25, label='a quarter')
     assert '<rect width="25" ' in share(0.25, label='a quarter')

@@ -28,14 +28,14 @@ def test_the_page_has_each_command_of_the_lessons_tables(cell):
     assert {command for command in commands if command not in page} == set()
 
 
-def test_the_lesson_leads_to_it():
+def test_the_lesson_links_to_the_checklist():
     assert '](checklist.html)' in cells()['checklist']
 
 
 @pytest.mark.slow
 @pytest.mark.browser
 @pytest.mark.skipif(PROGRAM is None, reason='no chromium here: .ci/run installs it')
-def test_it_prints_on_one_page():
+def test_the_checklist_prints_on_one_page():
     with launched() as browser:
         page = browser.new_page()
         page.goto(CHECKLIST.as_uri())

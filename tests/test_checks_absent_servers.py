@@ -78,16 +78,14 @@ def server(monkeypatch):
 WAITS = 'line 21, in send: self.client.wait_for_server()'
 
 
-def test_who_answers_goes_on(server):
+def test_a_client_that_answers_while_the_server_is_absent_passes(server):
     made = server(0.0, 0.1, 0.0)
     publish_in_vain(made, 'pose')
     assert (made.published, made.takes) == (['pose'], [])
 
 
 @pytest.mark.parametrize(('free_part', 'line'), [(1.0, WAITS), (0.1, WAITS), (0.1, '')])
-def test_a_wait_of_two_seconds_is_too_short_to_be_told_however_busy_the_machine_is(
-    server, free_part, line
-):
+def test_a_wait_of_two_seconds_is_not_reported_on_an_idle_or_busy_machine(server, free_part, line):
     publish_in_vain(server(2.0, 0.0, 0.0, free_part=free_part, line=line), 'pose')
 
 
@@ -100,7 +98,9 @@ def test_a_wait_of_two_seconds_is_too_short_to_be_told_however_busy_the_machine_
         (0.1, 'line 20, in send: goal = MoveArm.Goal()', Starved),
     ],
 )
-def test_who_does_not_answer_waits_unless_the_machine_is_too_busy(server, free_part, line, kind):
+def test_a_client_that_does_not_answer_fails_unless_the_machine_is_too_busy(
+    server, free_part, line, kind
+):
     made = server(0.0, 5.0, free_part=free_part, line=line)
     with pytest.raises(CheckFailed, match=r'look at server_is_ready\(\)') as failure:
         publish_in_vain(made, 'pose')

@@ -113,13 +113,13 @@ RIGHT = [
 
 
 @pytest.mark.parametrize('node_class', RIGHT)
-def test_who_sends_right_passes_in_whatever_way(run, node_class):
+def test_each_correct_way_to_send_goals_passes(run, node_class):
     run(node_class)
     check_outcomes()
     check_cancels()
 
 
-def test_an_obstacle_from_before_is_dealt_with_before_the_next_goal(run, monkeypatch):
+def test_an_earlier_obstacle_is_handled_before_the_next_goal_is_published(run, monkeypatch):
     """Two topics have no common order: the goal may be accepted before the obstacle arrives."""
     happened = []
 
@@ -160,13 +160,13 @@ def test_the_outcome_of_an_earlier_goal_may_come_late(run):
 
 
 @pytest.mark.slow
-def test_a_program_of_its_own_passes():
+def test_a_node_run_as_a_separate_program_passes():
     with running('move_arm_client'):
         check_outcomes()
         check_cancels()
 
 
-def test_another_server_is_one_too_many(run):
+def test_a_second_action_server_fails_the_check(run):
     run(MoveArmClient)
     run(MoveArmServer)
     with pytest.raises(CheckFailed, match='saw /move_arm_server: stop that node'):

@@ -183,7 +183,7 @@ WRONG_OUTCOMES = [
 
 @pytest.mark.parametrize(('node_class', 'message'), WRONG_OUTCOMES)
 @pytest.mark.usefixtures('impatient')
-def test_a_wrong_outcome_is_named(run, node_class, message):
+def test_a_wrong_outcome_fails_with_its_cause(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_outcomes()
@@ -285,7 +285,7 @@ WRONG_CANCELS = [
 @pytest.mark.slow
 @pytest.mark.parametrize(('node_class', 'message'), WRONG_CANCELS)
 @pytest.mark.usefixtures('impatient')
-def test_a_wrong_cancel_is_named_and_outcomes_are_right(run, node_class, message):
+def test_a_wrong_cancel_fails_only_the_check_of_cancels(run, node_class, message):
     run(node_class)
     check_outcomes()
     with pytest.raises(CheckFailed, match=message):

@@ -200,13 +200,13 @@ ON_ITS_CLOCK = [
 
 
 @pytest.mark.parametrize('node_class', ON_ITS_CLOCK)
-def test_who_serves_right_passes_in_whatever_way(run, node_class):
+def test_each_correct_action_server_passes(run, node_class):
     run(node_class)
     check_all()
 
 
 @pytest.mark.slow
-def test_a_program_of_its_own_passes():
+def test_a_node_run_as_a_separate_program_passes():
     with running('move_arm_server'):
         check_all()
 
@@ -225,7 +225,9 @@ def ticks(monkeypatch):
 @pytest.mark.parametrize(
     ('node_class', 'least', 'most'), [(MoveArmServer, 200, 400), (FixedSteps, 1150, 1300)]
 )
-def test_a_robot_minute_is_driven(run, ticks, node_class, least, most):
+def test_a_move_of_a_robot_minute_is_checked_on_the_simulated_clock(
+    run, ticks, node_class, least, most
+):
     """In coarse steps if the server can follow them; one that adds up steps cannot."""
     run(node_class)
     move_arm = action('/move_arm', MoveArm)
@@ -250,7 +252,7 @@ def loses_its_first_time(monkeypatch):
     return clocks
 
 
-def test_a_node_that_gets_its_clock_late_does_not_seem_to_jump(run, loses_its_first_time):
+def test_a_node_that_receives_its_first_clock_message_late_still_passes(run, loses_its_first_time):
     """What it computes from the time at which it has accepted a goal would be off by decades."""
     run(MoveArmServer)
     move_arm = action('/move_arm', MoveArm)
@@ -271,7 +273,7 @@ class ReportsSeldom(MoveArmServer):
 
 
 @pytest.mark.parametrize('seconds', [2.02, 3.0])
-def test_coarse_steps_make_no_slow_arm(run, seconds):
+def test_an_arm_that_moves_in_coarse_steps_is_not_called_slow(run, seconds):
     run(ReportsSeldom)
     moves.expect_reaches(action('/move_arm', MoveArm), (1.2, -0.6), speed=1.2 / seconds)
 
@@ -313,7 +315,7 @@ ON_THE_WALL_CLOCK = [WallThreads, ThreadOfItsOwn, NoParameterServices]
 
 @pytest.mark.slow
 @pytest.mark.parametrize('node_class', ON_THE_WALL_CLOCK)
-def test_who_ignores_the_clock_passes_with_short_moves(run, node_class):
+def test_a_server_that_ignores_the_simulated_clock_passes_with_short_moves(run, node_class):
     run(node_class)
     check_all()
 
@@ -321,7 +323,7 @@ def test_who_ignores_the_clock_passes_with_short_moves(run, node_class):
 # --- checks of one's own -------------------------------------------------------------------------
 
 
-def test_send_goal_tells_how_a_goal_ended(run):
+def test_send_goal_returns_how_a_goal_ended(run):
     run(MoveArmServer)
     move_arm = action('/move_arm', MoveArm)
     outcome = move_arm.send_goal(moves.goal((0.5, 0.2), speed=5.0))
@@ -334,7 +336,7 @@ def test_send_goal_tells_how_a_goal_ended(run):
     assert 0.0 < slow.result.position[0] < 0.5
 
 
-def test_wrong_goals_are_wrong_in_one_way():
+def test_each_wrong_goal_has_exactly_one_fault():
     for seed in range(50):
         for wrong in moves.choose_wrong(random.Random(seed)):
             is_finite = all(map(math.isfinite, [*wrong.position, wrong.speed]))

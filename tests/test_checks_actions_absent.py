@@ -40,14 +40,14 @@ class Elsewhere(Node):
     ],
 )
 @pytest.mark.usefixtures('impatient')
-def test_a_missing_server_is_looked_for(run, arguments, message):
+def test_a_missing_action_server_fails_with_its_likely_cause(run, arguments, message):
     run(Elsewhere, *arguments)
     with pytest.raises(CheckFailed, match=message):
         action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))
 
 
 @pytest.mark.usefixtures('impatient')
-def test_two_servers_are_one_too_many(run):
+def test_a_second_action_server_fails_the_check(run):
     run(MoveArmServer, key='one')
     run(Elsewhere, '/move_arm', node_name='another', key='two')
     with pytest.raises(CheckFailed, match=r'one server of the action /move_arm, saw 2 \(/anoth'):
@@ -55,6 +55,6 @@ def test_two_servers_are_one_too_many(run):
 
 
 @pytest.mark.usefixtures('impatient')
-def test_without_a_node_the_cell_that_starts_it_is_named():
+def test_a_missing_node_fails_with_advice_to_run_its_cell():
     with pytest.raises(CheckFailed, match='the node is not running, so run the cell that starts'):
         action('/move_arm', MoveArm).send_goal(moves.goal((0.5, 0.2)))

@@ -64,13 +64,13 @@ NOWHERE = [
 
 
 @pytest.mark.parametrize(('node_class', 'message'), NOWHERE)
-def test_who_gets_nowhere_is_told_why(run, node_class, message):
+def test_an_arm_that_gets_nowhere_fails_with_the_cause(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         reaches(action('/move_arm', MoveArm))
 
 
-def test_a_later_check_is_told_of_an_exception_before_it(run):
+def test_a_later_check_reports_an_earlier_exception_too(run):
     run(RaisesInExecute)
     for check in CHECKS[:2]:
         with pytest.raises(CheckFailed, match=r'the execute callback raised .*joint3'):

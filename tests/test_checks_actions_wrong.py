@@ -233,7 +233,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize(('node_class', 'checks', 'message'), WRONG)
-def test_a_mistake_fails_its_check_alone_with_the_cause(run, node_class, checks, message):
+def test_a_mistake_fails_the_expected_checks_and_names_its_cause(run, node_class, checks, message):
     run(node_class)
     found = failures()
     assert ' '.join(found) == checks, found

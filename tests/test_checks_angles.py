@@ -12,7 +12,7 @@ WANTED = (23.4, -67.8, -35.92, 67.8)
     ('number', 'is_near'),
     [(23.41, True), (23.4 - 360.0, True), (383.4, True), (23.42, False), (-23.4, False)],
 )
-def test_an_angle_is_what_it_is_whole_turns_aside(number, is_near):
+def test_angles_are_compared_up_to_whole_turns(number, is_near):
     assert angles.near(23.4, number) is is_near
 
 
@@ -43,7 +43,7 @@ def test_an_angle_is_what_it_is_whole_turns_aside(number, is_near):
         ((1.2, 0.8, 2), 'compare with what inverse_kinematics(x, y) returns'),
     ],
 )
-def test_advice_follows_what_is_there_instead(numbers, advice):
+def test_advice_for_missing_angles_fits_the_logged_numbers(numbers, advice):
     assert angles.missing(WANTED, numbers)
     found = angles.what_to_try(WANTED, numbers)
     assert advice in found

@@ -34,7 +34,7 @@ def test_numbers_are_read_as_people_write_them(text, numbers):
         ('', ''),
     ],
 )
-def test_what_stands_for_a_number_is_told(text, advice):
+def test_a_number_that_cannot_be_read_gets_advice(text, advice):
     found = answers.why_unreadable([65.92, -74.04], [text])
     assert advice in found
     assert bool(found) == bool(advice)
@@ -55,7 +55,7 @@ def test_a_bearing_is_an_answer_only_with_the_elbow_of_a_stretched_arm(text, is_
     assert answers.has_stretched([61.15], text) is is_stretched
 
 
-def test_a_form_that_other_lines_have_too_tells_nothing():
+def test_a_form_that_answers_share_with_other_lines_decides_nothing():
     forms = answers.Forms()
     forms.learn([65.92, -74.04], ['up 65.92 -74.04', 'distance 1.44', '1.44', '65.92'])
     assert forms.is_answer('up 1.5 2.5')
@@ -97,7 +97,7 @@ def test_both_branches_of_a_point_mirror_each_other_in_its_bearing(texts, are_br
     assert answers.hold_both_branches([45.0, 225.0], texts) is are_branches
 
 
-def test_a_flood_of_numbers_is_not_compared_pair_by_pair(monkeypatch):
+def test_a_flood_of_numbers_is_compared_up_to_a_limit_of_pairs(monkeypatch):
     compared = []
 
     def combinations(pairs, _):

@@ -23,9 +23,7 @@ class Clock(DrivenTime):
     [(True, 0, True), (True, 1, True), (True, 2, False), (False, 0, False)],
     ids=['stands still', 'was under way', 'goes on', 'is not slow'],
 )
-def test_a_slow_arm_follows_the_clock_with_which_it_stands_still(
-    monkeypatch, is_slow, comes, follows
-):
+def test_a_slow_arm_that_pauses_with_the_clock_follows_it(monkeypatch, is_slow, comes, follows):
     told = ['…'] * 5
     monkeypatch.setattr(arm_looks, 'is_under_way', lambda *_: is_slow)
     arm = SimpleNamespace(time=Clock(told, comes))
@@ -44,9 +42,7 @@ def test_a_slow_arm_follows_the_clock_with_which_it_stands_still(
     ],
     ids=['at each step', 'too few', 'a late clock', 'stands still', 'says nothing'],
 )
-def test_an_arm_that_moves_on_while_its_clock_stands_still_knows_the_wall_clock_alone(
-    gone, moves_on
-):
+def test_an_arm_that_moves_while_its_clock_stands_still_uses_the_wall_clock(gone, moves_on):
     told = []
 
     def let_it_report(done, *, free_sec):

@@ -35,30 +35,30 @@ def test_a_slow_arm_is_under_way():
     assert not is_slow(evenly(0.01), is_over=True)
 
 
-def test_an_arm_that_is_there_is_not():
+def test_an_arm_at_its_goal_is_not_under_way():
     assert not is_slow([*evenly(0.03), *[1.0] * 10])
 
 
-def test_one_that_comes_nearer_and_nearer_never_gets_there():
+def test_an_arm_that_approaches_ever_more_slowly_is_not_under_way():
     assert not is_slow([1.0 - 0.9**number for number in range(40)])
 
 
-def test_one_that_stands_still_or_goes_away_never_gets_there():
+def test_an_arm_that_stands_still_or_moves_away_is_not_under_way():
     assert not is_slow([0.3] * 40)
     assert not is_slow([-part for part in evenly(0.01)])
     assert not is_slow([min(0.2, part) for part in evenly(0.02)])
 
 
-def test_one_that_tells_no_more_may_have_stopped():
+def test_an_arm_that_stopped_sending_feedback_is_not_under_way():
     assert not is_slow(evenly(0.01), since_sec=2 * LATEST_SEC)
 
 
-def test_too_little_feedback_and_none_of_two_joints_tell_nothing():
+def test_feedback_that_is_too_short_or_of_one_joint_shows_no_slow_arm():
     assert not is_slow(evenly(0.01)[:3])
     assert not is_slow(evenly(0.01), lengths=1)
 
 
-def test_who_rejects_haste_is_told_so_where_each_speed_has_to_be_accepted(monkeypatch):
+def test_a_server_that_rejects_only_fast_goals_reads_that_each_speed_is_allowed(monkeypatch):
     arm = SimpleNamespace(send=lambda first, other: SimpleNamespace(goal=other))
     monkeypatch.setattr(arm_refusals, 'look', lambda action, body, start: body(arm))
     wanted = 'it rejected, and one at 0.5 rad/s accepted: every speed above 0 is allowed'

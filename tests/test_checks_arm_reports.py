@@ -55,29 +55,27 @@ def evenly(seconds, step_sec=STEP_NS / 1e9):
 
 
 @pytest.mark.parametrize('seconds', [0.5, 2.0, 60.0])
-def test_a_message_that_a_busy_machine_brings_a_step_late_is_steady(seconds):
+def test_a_move_with_one_message_a_step_late_is_steady(seconds):
     times, parts = evenly(seconds)
     times[3] += STEP_NS / 1e9
     report(parts, times, DRIVEN).expect_steady()
 
 
-def test_two_steps_of_a_short_move_are_not():
+def test_a_short_move_with_one_message_two_steps_late_is_not_steady():
     times, parts = evenly(0.5)
     times[3] += 2 * STEP_NS / 1e9
     with pytest.raises(CheckFailed, match='go steadily'):
         report(parts, times, DRIVEN).expect_steady()
 
 
-def test_a_step_does_not_excuse_a_long_move_that_slows_down():
+def test_a_long_move_of_uneven_speed_is_not_steady():
     times, parts = evenly(20.0)
     with pytest.raises(CheckFailed, match='move at one speed'):
         report([part**1.5 for part in parts], times, DRIVEN).expect_steady()
 
 
 @pytest.mark.parametrize(('stalled_share', 'failure'), [(0.0, CheckFailed), (0.5, Starved)])
-def test_a_busy_machine_may_be_to_blame_for_an_unsteady_move_be_it_too_fast(
-    stalled_share, failure
-):
+def test_an_unsteady_move_counts_as_starved_only_on_a_busy_machine(stalled_share, failure):
     times, parts = evenly(0.5)  # asked for: 1 s
     with pytest.raises(CheckFailed) as error:
         report([part**2 for part in parts], times, Wall(stalled_share)).expect_steady()
@@ -110,7 +108,7 @@ END_BELOW = -0.4, 1.2
         ([0.5, 0.5, 0.5], 'compute it from the goal'),
     ],
 )
-def test_what_is_left_is_that_of_the_joint_that_is_farthest_away(told, hint):
+def test_remaining_is_the_distance_of_the_joint_farthest_from_its_goal(told, hint):
     found = ''
     try:
         expect_remaining(np.array(told), WAYS, start=(0.0, 0.0), end=END_BELOW)
@@ -120,7 +118,7 @@ def test_what_is_left_is_that_of_the_joint_that_is_farthest_away(told, hint):
     assert bool(found) == bool(hint)
 
 
-def test_what_one_joint_or_the_largest_difference_has_to_go_is_not_told_apart_by_guessing():
+def test_advice_names_no_cause_if_two_mistakes_would_explain_remaining():
     with pytest.raises(CheckFailed, match='of the joint that is farthest away, in either'):
         expect_remaining(
             np.array([0.3, 0.2, 0.1]), -WAYS, start=(0.0, 0.0), end=[-each for each in END_BELOW]

@@ -29,20 +29,20 @@ def waited(monkeypatch):
     return told
 
 
-def test_one_that_comes_is_nothing_to_talk_about(waited):
+def test_a_server_that_appears_is_not_reported(waited):
     waited.comes = True
     assert wait_for_server(waited.watcher, lambda: False) is None
 
 
 @pytest.mark.parametrize(('gives', 'doubt'), [(1.0, CheckFailed), (0.6, Starved)])
-def test_a_program_without_a_processor_is_not_to_blame(waited, gives, doubt):
+def test_a_missing_server_counts_as_starved_on_a_busy_machine(waited, gives, doubt):
     waited.gives = gives
     none = wait_for_server(waited.watcher, lambda: False)
     assert (none.seen, none.doubt) == ('none in 10 s', doubt)
     assert (waited.free, waited.wall) == ([SERVER_SEC], [])
 
 
-def test_where_none_can_come_nobody_waits_for_long(waited):
+def test_the_wait_is_short_if_no_server_can_appear(waited):
     waited.is_settled, waited.gives = True, 0.0
     none = wait_for_server(waited.watcher, lambda: False)
     assert (none.seen, none.doubt) == ('none', CheckFailed)
@@ -58,7 +58,7 @@ def test_where_none_can_come_nobody_waits_for_long(waited):
     ],
     ids=['service', 'action'],
 )
-def test_the_check_of_one_that_does_not_come_has_that_doubt(
+def test_a_check_of_a_missing_server_raises_the_exception_of_its_wait(
     monkeypatch, module, graph, look, doubt
 ):
     monkeypatch.setattr(module, 'wait_for_server', lambda *_: NoServer('none in 9 s', doubt))

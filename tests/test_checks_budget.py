@@ -56,21 +56,21 @@ def run(kernel, times):
     return [each.given_up for each in asyncio.run(all_of_them())]
 
 
-def test_checks_share_their_time_and_none_begins_when_it_is_over():
+def test_checks_share_a_time_limit_and_none_starts_after_it():
     kernel = Kernel(9.0, 9.0)
     assert run(kernel, 5) == ['', '', TOO_SLOW, TOO_SLOW, TOO_SLOW]
     assert kernel.asked == 3
 
 
-def test_a_busy_machine_has_longer_and_is_told_of():
+def test_a_busy_machine_gets_more_time_and_is_named_as_the_cause():
     assert run(Kernel(40.0, 2.0), 3) == ['', TOO_BUSY, TOO_BUSY]
 
 
-def test_what_is_in_time_is_judged():
+def test_checks_that_end_in_time_are_judged():
     assert run(Kernel(2.0, 2.0), 4) == [''] * 4
 
 
-def test_what_was_given_up_is_left_open_and_says_why():
+def test_a_check_that_was_given_up_is_ungraded_with_a_reason():
     cell = new_code_cell(metadata={'nbgrader': {'grade_id': 'reaches', 'points': 2}})
     verdict = judge_overdue(cell, CellRun(timed_out=True, given_up=TOO_SLOW), [])
     assert (verdict.outcome, verdict.reason) == ('ungraded', TOO_SLOW)

@@ -116,7 +116,7 @@ class AdaptiveSemaphore(ReentrantCallbackGroup):
         return not self.is_closed and super().can_execute(entity)
 
 
-def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_future():
+def test_a_timer_due_when_the_simulated_clock_ends_fires_on_wall_time():
     # rcl carries over what is left of the period, unless that is exactly nothing
     gate, fired = AdaptiveSemaphore(), threading.Event()
 
@@ -139,13 +139,13 @@ def test_a_timer_that_was_due_when_the_clock_was_given_back_is_not_left_in_the_f
         assert fired.wait(10.0)
 
 
-def test_a_clock_that_only_the_notebook_knows_of_so_far_is_left_alone(monkeypatch):
+def test_a_clock_publisher_that_only_the_notebook_knows_prevents_simulation(monkeypatch):
     monkeypatch.setattr(student, 'publishes', lambda topic_name: topic_name == '/clock')
     with Watcher() as watcher, pytest.raises(clock.Inconclusive, match='another node publishes'):
         clock.SimulatedClock(watcher, needed=set()).__enter__()
 
 
-def test_a_clock_that_comes_to_light_while_another_is_driven_is_left_alone():
+def test_a_clock_publisher_that_appears_during_simulation_stops_it():
     with Watcher() as watcher, clock.SimulatedClock(watcher, needed=set()) as simulated:
         simulated.tick(10**8)
         watcher.node.create_publisher(ClockMessage, '/clock', 10)
@@ -155,7 +155,7 @@ def test_a_clock_that_comes_to_light_while_another_is_driven_is_left_alone():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('is_busy', 'clock_name'), [(True, 'simulated'), (False, 'wall')])
-def test_slow_answers_tell_of_a_slow_node_only_where_processors_are_free(
+def test_slow_answers_prevent_simulation_only_if_processors_are_free(
     monkeypatch, is_busy, clock_name
 ):
     monkeypatch.setattr(barriers, 'SLOWEST_MEDIAN_SEC', 0.0)
@@ -170,7 +170,7 @@ def test_slow_answers_tell_of_a_slow_node_only_where_processors_are_free(
     ('answers_after_sec', 'stalled_share', 'in_time'),
     [(0.4, 0.0, True), (1.0, 0.0, False), (1.0, 0.75, True), (3.0, 1.0, False)],
 )
-def test_a_busy_machine_gives_more_time_to_answer_but_not_without_end(
+def test_a_busy_machine_extends_the_time_to_answer_up_to_a_limit(
     monkeypatch, answers_after_sec, stalled_share, in_time
 ):
     now = [0.0]
@@ -197,7 +197,7 @@ def test_a_busy_machine_gives_more_time_to_answer_but_not_without_end(
         (True, 1.0, 46.0, False),
     ],
 )
-def test_a_busy_machine_does_not_use_up_the_time_for_driving_the_clock(
+def test_the_time_for_simulation_is_extended_on_a_busy_machine_when_grading(
     monkeypatch, in_room, stalled_share, after_sec, is_left
 ):
     now = [0.0]
@@ -238,9 +238,7 @@ def look_at_tired(**options):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('rests', [0, 15])
-def test_a_callback_that_takes_longer_than_its_period_is_seen_whenever_that_begins(
-    monkeypatch, rests
-):
+def test_a_callback_longer_than_its_period_is_detected_early_or_late(monkeypatch, rests):
     monkeypatch.setattr(barriers, 'PROMPT_SEC', 5.0)  # what is due is waited for, and not asked
     assert str(look_at_tired(rests=rests, works_sec=0.25)) == driven_topic.OVERRUNS
 
@@ -252,7 +250,7 @@ def test_a_callback_that_works_a_little_after_its_message_is_not_too_slow(monkey
 
 
 @pytest.mark.parametrize('nodes', [1, 2])
-def test_what_is_due_saves_a_sole_node_the_questions(monkeypatch, nodes):
+def test_ticks_with_a_due_message_are_not_acknowledged_for_a_sole_node(monkeypatch, nodes):
     calls = collections.Counter()
 
     def count(cls, name):
@@ -277,7 +275,7 @@ def test_what_is_due_saves_a_sole_node_the_questions(monkeypatch, nodes):
     assert (calls['tick'] - calls['acknowledge'] > 40) == (nodes == 1)
 
 
-def test_a_tick_is_asked_about_where_what_is_due_does_not_come(monkeypatch):
+def test_a_tick_is_acknowledged_if_its_due_message_does_not_come(monkeypatch):
     asked = []
     with (
         running('five_hz'),
@@ -317,13 +315,13 @@ def look_at_counter(calls_each):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
-def test_steps_prove_no_period_that_they_have_made():
+def test_a_node_that_counts_calls_faster_than_the_steps_is_detected():
     assert str(look_at_counter(100)) == sampling.COUNTS
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
-def test_who_counts_the_calls_of_a_timer_is_seen_in_steps_as_fine_as_these():
+def test_a_node_that_counts_timer_calls_is_measured_in_fine_steps():
     recording = look_at_counter(25)
     assert recording.clock == 'simulated'
     assert recording.rate_hz == pytest.approx(2.0, abs=0.02)
@@ -346,7 +344,7 @@ def test_coarse_steps_prove_a_slow_period_in_little_time(monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_recording_goes_on_until_there_are_messages_enough_to_judge():
+def test_a_recording_goes_on_until_it_has_enough_messages():
     with running('fifth_hz'):
         recording = topic(TOPIC).record(seconds=2.0)
     assert (recording.clock, len(recording.messages)) == ('simulated', 2)

@@ -49,12 +49,12 @@ def test_equal_messages_have_one_content_though_their_bytes_differ():
     ],
     ids=['number', 'sign', 'nan', 'name', 'field'],
 )
-def test_another_number_sign_name_or_field_is_another_content(other):
+def test_a_different_number_sign_name_or_field_changes_the_content(other):
     assert content(other) != content(JointState(name=['joint1'], position=[0.0]))
     assert content(other) == content(other)
 
 
-def test_a_number_by_itself_is_compared_like_those_of_a_sequence():
+def test_a_single_number_is_compared_like_a_sequence():
     assert content(Point(x=-0.0)) != content(Point(x=0.0))
     assert content(Point(x=float('nan'))) == content(Point(x=float('nan')))
 

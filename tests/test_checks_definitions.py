@@ -88,7 +88,7 @@ RIGHT = {
 
 
 @pytest.mark.parametrize('texts', RIGHT.values(), ids=RIGHT)
-def test_what_is_right_passes_in_any_form(check, texts, capfd):
+def test_right_definitions_pass_in_any_form(check, texts, capfd):
     check(**texts)
     assert capfd.readouterr() == ('', '')
 
@@ -234,7 +234,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize(('texts', 'words'), WRONG.values(), ids=WRONG)
-def test_each_mistake_costs_its_own_text_alone_and_is_named(check, texts, words, capfd):
+def test_each_mistake_costs_only_the_points_of_its_text_and_is_named(check, texts, words, capfd):
     [name] = texts
     with pytest.raises(CheckFailed) as failure:
         check(**texts)
@@ -246,7 +246,7 @@ def test_each_mistake_costs_its_own_text_alone_and_is_named(check, texts, words,
     assert capfd.readouterr().err == ''  # rosidl prints there
 
 
-def test_what_is_wrong_in_both_is_told_of_both_and_leaves_nothing(check):
+def test_mistakes_in_both_texts_are_both_named_and_leave_no_points(check):
     with pytest.raises(CheckFailed) as failure:
         check(**turns('int32', 'int'), **count('[<=60]', '[]'))
     said = str(failure.value)
@@ -255,19 +255,19 @@ def test_what_is_wrong_in_both_is_told_of_both_and_leaves_nothing(check):
     assert '; in `count_turns_srv`, ' in said
 
 
-def test_of_many_mistakes_three_are_told(check):
+def test_the_first_three_of_many_mistakes_are_named(check):
     with pytest.raises(CheckFailed, match=r'; and 2 more$'):
         check('int a\nint b\nint c\nint d\nint e')
 
 
-def test_where_nothing_is_written_that_is_all(check):
+def test_a_notebook_without_texts_fails_with_the_missing_name(check):
     with pytest.raises(
         CheckFailed, match=r'^expected a value for `turns_msg`, saw no such name: '
     ):
         check(None, None)
 
 
-def test_the_visible_part_alone_leaves_no_points(monkeypatch):
+def test_the_visible_part_reports_no_remaining_points(monkeypatch):
     monkeypatch.setattr(sys.modules['__main__'], 'turns_msg', 'int turns', raising=False)
     monkeypatch.setattr(sys.modules['__main__'], 'count_turns_srv', COUNT_TURNS, raising=False)
     texts = Definitions(PACKAGE, turns_msg='msg/Turns.msg', count_turns_srv='srv/CountTurns.srv')
@@ -277,7 +277,7 @@ def test_the_visible_part_alone_leaves_no_points(monkeypatch):
     assert 'leaves' not in str(failure.value)
 
 
-def test_from_the_hidden_part_the_same_is_told(check, monkeypatch):
+def test_a_hidden_check_names_the_same_mistake(check, monkeypatch):
     monkeypatch.setattr(hidden, '_quiet', True)
     with pytest.raises(CheckFailed, match=r'int64.*: the table asks for another number of bits'):
         check(**turns('int32[2]', 'int64[2]'))
@@ -307,7 +307,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize('text', HOSTILE.values(), ids=HOSTILE)
-def test_no_text_takes_long_or_brings_anything_else_than_a_sentence(check, text, capfd):
+def test_a_hostile_text_fails_with_one_short_printable_sentence(check, text, capfd):
     with pytest.raises(CheckFailed) as failure:
         check(turns_msg=text)
     said = str(failure.value)
@@ -317,7 +317,7 @@ def test_no_text_takes_long_or_brings_anything_else_than_a_sentence(check, text,
     assert capfd.readouterr().err == ''
 
 
-def test_a_text_at_the_limit_is_read():
+def test_a_text_of_the_maximum_length_is_read_and_a_longer_one_refused():
     text = TURNS + '#' * (MOST_CHARACTERS - len(TURNS))
     read = read_definition(text, package=PACKAGE, kind='msg', own_types=())
     assert read.faults == []
@@ -346,7 +346,7 @@ def test_a_wrong_definition_in_a_check_is_the_authors_mistake(check, monkeypatch
 # --- in a notebook -------------------------------------------------------------------------------
 
 
-def test_a_notebook_is_shown_what_each_line_means(capsys):
+def test_show_definition_explains_each_line(capsys):
     show_definition('uint8 OPEN=1\nfloat64[2] force [1, 2]  # N\n---\nstring[] names\nint n')
     assert capsys.readouterr().out == (
         'uint8 OPEN=1             constant OPEN, uint8, always 1\n'

@@ -19,7 +19,7 @@ def stage(participants):
     return Stage(*participants)
 
 
-def test_a_subscription_hears_what_is_published_while_it_is_there(stage):
+def test_a_subscription_receives_only_messages_published_after_it_was_made(stage):
     publisher = stage.publisher('/pose')
     early = publisher.publish()
     subscription = stage.subscription('/pose')
@@ -45,19 +45,21 @@ def test_a_subscription_hears_what_is_published_while_it_is_there(stage):
         ({'topic_name': '/pose', 'type_': Int32}, {'topic_name': '/pose'}, False),
     ],
 )
-def test_name_and_type_decide(stage, publisher, subscription, arrives):
+def test_messages_arrive_only_if_topic_name_and_type_match(
+    stage, publisher, subscription, arrives
+):
     sender, receiver = stage.publisher(**publisher), stage.subscription(**subscription)
     assert receiver.received(sender.publish()) is arrives
 
 
-def test_each_subscription_hears_each_publisher(stage):
+def test_each_subscription_receives_from_each_publisher(stage):
     publishers = [stage.publisher('/pose') for _ in range(3)]
     subscriptions = [stage.subscription('/pose') for _ in range(2)]
     messages = [publisher.publish() for publisher in publishers]
     assert all(subscription.received(*messages) for subscription in subscriptions)
 
 
-def test_a_closed_subscription_stops_nobody(stage):
+def test_a_closed_subscription_does_not_stop_a_publisher(stage):
     publisher, closed = stage.publisher('/pose'), stage.subscription('/pose')
     closed.close()
     unheard = publisher.publish()
@@ -66,7 +68,7 @@ def test_a_closed_subscription_stops_nobody(stage):
     assert not again.received(unheard)
 
 
-def test_stages_do_not_hear_each_other(participants):
+def test_messages_of_one_stage_do_not_reach_another_stage(participants):
     one, other = Stage(*participants), Stage(*participants)
     publisher, subscription = one.publisher('/pose'), other.subscription('/pose')
     ninth = [publisher.publish() for _ in range(9)][-1]
@@ -75,14 +77,14 @@ def test_stages_do_not_hear_each_other(participants):
     assert not subscription.received(ninth)
 
 
-def test_its_nodes_are_hidden(stage, participants):
+def test_the_nodes_of_a_stage_are_hidden(stage, participants):
     stage.publisher('/pose')
     names = participants[0].node.get_node_names()
     assert names
     assert all(name.startswith('_') for name in names)
 
 
-def test_without_a_meeting_there_is_no_verdict(monkeypatch):
+def test_an_experiment_without_discovery_raises_did_not_run(monkeypatch):
     monkeypatch.setattr(stage_module, 'TIMEOUT_SEC', 0.3)
     elsewhere = 1 + classroom.enter() % 101
     with Watcher() as senders, Watcher(domain_id=elsewhere) as receivers:

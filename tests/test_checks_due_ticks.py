@@ -34,14 +34,14 @@ def test_a_message_is_due_once_three_have_come_equally_far_apart():
         ([2, 2, 2, 2], {'took_sec': 0.1}),
     ],
 )
-def test_nothing_is_due_where_ticks_do_not_tell_it(gaps, options):
+def test_no_message_is_due_without_a_clear_pattern_of_ticks(gaps, options):
     due, was_due = learned(gaps, **options)
     assert not any(was_due)
     due.note(STEP_NS, messages=0, took_sec=0.001)
     assert not due.is_next(STEP_NS)
 
 
-def test_what_was_learned_is_worth_nothing_with_other_steps_or_once_one_is_missing():
+def test_a_pattern_of_ticks_is_forgotten_after_a_missing_message_or_other_steps():
     due, _ = learned([2, 2, 2, 1])
     assert not due.is_next(STEP_NS)
     due, _ = learned([2, 2, 2])

@@ -52,7 +52,7 @@ def test_a_shorter_recording_is_the_beginning_of_a_longer_one():
     assert topic.record(40.0).messages[-1].time_sec == 40.0
 
 
-def test_where_messages_are_rare_the_first_two_are_taken():
+def test_a_shorter_recording_of_rare_messages_has_the_first_two():
     samples = (Sample('first', 20.0, 20.0), Sample('second', 40.0, 40.0))
     rare = Recording(
         topic_name='/t',
@@ -68,13 +68,13 @@ def test_where_messages_are_rare_the_first_two_are_taken():
 
 
 @pytest.mark.parametrize('clock', ['simulated', 'wall'])
-def test_a_longer_one_is_recorded_anew(clock):
+def test_a_longer_recording_is_made_anew(clock):
     topic = Topic(clock=clock)
     topic.record(10.0), topic.record(60.0), topic.record(60.0)
     assert topic.looks == 2
 
 
-def test_who_looks_longer_on_the_wall_clock_is_told_what_was_seen_there():
+def test_a_longer_look_on_the_wall_clock_receives_the_earlier_recording():
     topic = Topic(clock='wall')
     shorter = topic.record(10.0)
     topic.record(60.0)
@@ -84,7 +84,7 @@ def test_who_looks_longer_on_the_wall_clock_is_told_what_was_seen_there():
     assert topic.earlier is None
 
 
-def test_who_looks_longer_on_the_robots_clock_begins_anew():
+def test_a_longer_look_on_the_simulated_clock_receives_no_earlier_recording():
     topic = Topic()
     topic.record(10.0), topic.record(60.0)
     assert topic.earlier is None
@@ -97,7 +97,7 @@ def test_another_topic_or_step_is_recorded_anew(differs):
     assert topic.looks == 2
 
 
-def test_messages_that_have_ended_are_looked_for_once_more():
+def test_a_topic_whose_messages_ended_is_recorded_again():
     topic = Topic(clock='wall')
     samples = tuple(Sample('one', 0.2 * i, 0.2 * i) for i in range(1, 11))
     ended = replace(topic.record(10.0), messages=samples, seconds=4.0)
@@ -106,20 +106,20 @@ def test_messages_that_have_ended_are_looked_for_once_more():
     assert topic.looks == 2
 
 
-def test_a_makeshift_of_a_busy_machine_serves_nobody_else():
+def test_a_makeshift_recording_is_not_used_again():
     topic = Topic(clock='wall', is_makeshift=True)
     topic.record(10.0), topic.record(10.0)
     assert topic.looks == 2
 
 
-def test_outside_the_tests_room_cells_may_have_run_meanwhile(monkeypatch):
+def test_recordings_are_not_reused_outside_the_test_room(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM')
     topic = Topic()
     topic.record(10.0), topic.record(10.0)
     assert topic.looks == 2
 
 
-def test_who_may_have_changed_the_nodes_makes_it_look_again():
+def test_an_interaction_with_nodes_causes_a_new_recording():
     topic = Topic()
     topic.record(10.0)
     interactions.note()
@@ -129,7 +129,7 @@ def test_who_may_have_changed_the_nodes_makes_it_look_again():
 
 @pytest.mark.starts
 @pytest.mark.parametrize(('listens', 'counted'), [(True, 0), (False, 1)])
-def test_a_watcher_counts_as_that_unless_it_only_listens(listens, counted):
+def test_a_watcher_counts_as_an_interaction_unless_it_only_listens(listens, counted):
     before = interactions.count()
     with Watcher(listens=listens):
         pass
@@ -140,7 +140,7 @@ def nothing(**doubt):
     fail(expected='messages on /t', seen='no message in 7 s', hint='publish some', **doubt)
 
 
-def test_silence_is_told_again_and_by_its_cause_alone_in_a_hidden_part(monkeypatch):
+def test_silence_is_reported_again_and_only_by_its_cause_in_a_hidden_check(monkeypatch):
     wanted, looks = Wanted('/t', 10.0, 0.1), []
 
     def look(_):
@@ -155,7 +155,7 @@ def test_silence_is_told_again_and_by_its_cause_alone_in_a_hidden_part(monkeypat
     assert len(looks) == 1
 
 
-def test_a_failure_that_may_be_the_machines_is_looked_into_again():
+def test_a_failure_that_the_machine_may_have_caused_is_checked_again():
     looks = []
 
     def look(_):

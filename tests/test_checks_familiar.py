@@ -36,7 +36,7 @@ def is_met(topic_name):
         return graphs.wait_for_publisher(watcher, topic_name, timeout_sec=3.0)
 
 
-def test_a_publisher_is_settled_once_in_a_cell(node, end_cell, monkeypatch):
+def test_the_wait_for_a_publisher_happens_once_in_a_grade_cell(node, end_cell, monkeypatch):
     node.create_publisher(String, '/talk', 10)
     assert is_met('/talk')
     monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
@@ -45,7 +45,7 @@ def test_a_publisher_is_settled_once_in_a_cell(node, end_cell, monkeypatch):
     assert not is_met('/talk')
 
 
-def test_another_publisher_is_waited_for(node, end_cell, monkeypatch):
+def test_a_new_publisher_is_waited_for_in_the_same_cell(node, end_cell, monkeypatch):
     node.create_publisher(String, '/talk', 10)
     assert is_met('/talk')
     monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
@@ -53,14 +53,14 @@ def test_another_publisher_is_waited_for(node, end_cell, monkeypatch):
     assert not is_met('/talk')
 
 
-def test_elsewhere_each_check_waits(node, monkeypatch):
+def test_each_check_waits_outside_a_grade_cell(node, monkeypatch):
     node.create_publisher(String, '/talk', 10)
     assert is_met('/talk')
     monkeypatch.setattr(graphs, 'NEWCOMER_SEC', NEVER_SEC)
     assert not is_met('/talk')
 
 
-def test_a_service_is_settled_once_in_a_cell(node, end_cell, monkeypatch):
+def test_the_wait_for_a_service_happens_once_in_a_grade_cell(node, end_cell, monkeypatch):
     node.create_service(Trigger, '/go', lambda request, response: response)
     waits = []
     spin_for = Watcher.spin_for
@@ -73,7 +73,7 @@ def test_a_service_is_settled_once_in_a_cell(node, end_cell, monkeypatch):
     assert len(waits) == 2
 
 
-def test_a_relay_is_looked_at_after_a_pause_once_in_a_cell(run, end_cell, monkeypatch):
+def test_a_relay_is_tested_after_a_pause_once_in_a_grade_cell(run, end_cell, monkeypatch):
     looks = []
     monkeypatch.setattr(Passage, 'loses_after_a_pause', lambda *_: bool(looks.append(1)))
     run(monitor.JointStateMonitor)
@@ -86,7 +86,7 @@ def test_a_relay_is_looked_at_after_a_pause_once_in_a_cell(run, end_cell, monkey
 
 
 @pytest.mark.parametrize(('most', 'is_there'), [(1, False), (graphs.MANY_NEWCOMERS, True)])
-def test_where_newcomers_turn_up_all_the_time_somebody_publishes(monkeypatch, most, is_there):
+def test_a_topic_with_ever_new_publishers_counts_as_published(monkeypatch, most, is_there):
     """A node that makes a publisher for each message never has the last one."""
     infos = []
 

@@ -12,14 +12,14 @@ def _nobody_is_known(monkeypatch):
     monkeypatch.setattr(goal_answers, '_answers', {})
 
 
-def test_a_rejected_goal_does_not_hide_when_one_was_accepted():
+def test_a_rejection_keeps_the_time_of_the_last_accepted_goal():
     note_answer(SERVER, sent_ns=5, is_accepted=True)
     note_answer(SERVER, sent_ns=7, is_accepted=False)
     assert answers_of(SERVER) == GoalAnswers(5, has_rejected_last=True)
     assert answers_of(OTHER) == GoalAnswers()
 
 
-def test_why_a_server_is_locked_is_told_until_it_accepts_again():
+def test_the_reason_of_a_rejection_is_kept_until_a_goal_is_accepted():
     note_answer(SERVER, sent_ns=3, is_accepted=True)
     note_answer(SERVER, sent_ns=5, is_accepted=False)
     goal_answers.note_why_rejected(SERVER, 'the flag')

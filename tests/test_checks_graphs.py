@@ -38,9 +38,7 @@ def test_the_graph_lists_every_endpoint_and_no_hidden_node():
         (('/a', f'/{graphs.UNKNOWN}'), ('/a', f'/{graphs.UNKNOWN}'), 0.5, True),
     ],
 )
-def test_a_graph_that_is_what_it_was_a_while_ago_has_settled(
-    monkeypatch, nodes, was, ago_sec, is_waited_for
-):
+def test_an_unchanged_graph_counts_as_settled(monkeypatch, nodes, was, ago_sec, is_waited_for):
     now, waited = picture(nodes, publishers={'/t': nodes}), []
     monkeypatch.setattr(graphs, '_look', lambda node: now)
     earlier = time.monotonic() - ago_sec, picture(was, publishers={'/t': was})
@@ -87,12 +85,12 @@ def picture(nodes=('/a',), publishers=None, subscriptions=None):
         (picture(publishers={'/Joint_States': ('/a',)}), '/a uses /Joint_States, so compare'),
     ],
 )
-def test_silence_has_a_reason(seen, why):
+def test_silence_on_a_topic_is_explained(seen, why):
     assert seen.why_no_message('/t/joint_states').startswith(why)
 
 
 @pytest.mark.starts
-def test_a_subscription_that_is_missing_has_a_reason():
+def test_a_missing_subscription_is_explained():
     seen = picture(subscriptions={'/target_points': ('/a',)})
     assert (
         seen.why_no_subscription('/target_point')

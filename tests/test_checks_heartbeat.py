@@ -86,13 +86,13 @@ def look(monkeypatch):
         ([*[0.01] * 100, *every(0.1, start_sec=12.0)], BUSY, CheckFailed),
     ],
 )
-def test_only_a_silence_that_the_machine_does_not_explain_counts(
+def test_only_silence_that_a_busy_machine_cannot_explain_fails(
     look, beats_sec, free_share, expected
 ):
     assert look(Fake(beats_sec, free_share=free_share)) == expected
 
 
-def test_a_beat_that_comes_while_the_notebook_is_asked_is_received(look):
+def test_a_beat_that_comes_during_the_wait_for_a_turn_counts(look):
     fake = Fake(pausing(start_sec=0.5, end_sec=2.0), free_share=0.5)
     fake.turn_sec = 0.1
     assert look(fake) == 'goes on'
@@ -130,14 +130,14 @@ class Waits(Fake):
         ([0.3] * 3, FREE, 'goes on', 1),
     ],
 )
-def test_who_waits_upon_each_message_does_not_go_on_however_busy_the_machine_is(
+def test_waits_after_each_message_are_distinguished_from_a_busy_machine(
     look, waits_sec, free_share, expected, sent
 ):
     fake = Waits(waits_sec, free_share=free_share)
     assert (look(fake, fake.send), fake.sent) == (expected, sent)
 
 
-def test_a_machine_that_holds_everything_up_holds_up_no_message(look):
+def test_a_machine_that_delays_all_beats_is_not_taken_for_a_waiting_node(look):
     fake = Waits([1.0] * 3, free_share=BUSY)
     fake.beats_sec = every(0.7)
     assert look(fake, fake.send) == 'goes on'

@@ -17,7 +17,7 @@ def message(*position, name=NAMES):
     return JointState(name=name, position=position)
 
 
-def test_a_message_of_another_type_is_no_pose_and_is_told_so():
+def test_a_float_array_is_no_pose_and_gets_advice():
     wrong = Float64MultiArray(data=[0.5236, -1.5708])
     assert joints.pose(wrong) == {}
     assert joints.shown(wrong) == 'a message of the type Float64MultiArray'
@@ -79,14 +79,14 @@ def test_joints_agree_in_any_order():
         (message(name=[]), '0 positions with 0 names', 'give each message two'),
     ],
 )
-def test_another_pose_is_shown_with_advice(wrong, seen, advice):
+def test_a_wrong_pose_is_shown_with_advice(wrong, seen, advice):
     pose = joints.pose(wrong)
     assert not joints.agree(pose, RIGHT)
     assert joints.shown(wrong) == seen
     assert joints.why_wrong(wrong, POSE_DEG).startswith(advice)
 
 
-def test_who_had_another_pose_right_is_not_told_to_convert_at_last():
+def test_advice_to_convert_angles_depends_on_earlier_right_poses():
     seen = message(0.7, 0.1)
     assert joints.why_wrong(seen, POSE_DEG, others_right=True) == joints.CONVERT_EACH
     assert joints.why_wrong(seen, POSE_DEG) == joints.CONVERT
@@ -102,13 +102,13 @@ def test_who_had_another_pose_right_is_not_told_to_convert_at_last():
         ([0.5236, -1.57], 'do not round'),
     ],
 )
-def test_a_position_that_is_not_there_or_no_number_is_wrong(position, advice):
+def test_missing_rounded_and_non_finite_positions_fail(position, advice):
     with pytest.raises(CheckFailed, match=advice):
         joints.expect_radians(position, POSE_DEG)
     joints.expect_radians([math.radians(angle) for angle in POSE_DEG], POSE_DEG)
 
 
-def test_a_message_of_another_type_is_no_pose():
+def test_a_point_is_no_pose_and_gets_advice():
     point = Point(x=0.5)
     assert joints.pose(point) == {}
     assert joints.shown(point) == 'a message of the type Point'

@@ -22,7 +22,7 @@ def description():
 @pytest.mark.slow
 @pytest.mark.parametrize('times', [5, pytest.param(200, marks=pytest.mark.timeout(1200))])
 @pytest.mark.parametrize('place', ['here', 'elsewhere'])
-def test_nobody_gets_what_was_said_before_without_asking_for_it(run, place, times):
+def test_a_volatile_subscription_never_receives_earlier_messages(run, place, times):
     heard, said_before = [], set()
     probe = run(Node, 'probe')
     probe.create_subscription(

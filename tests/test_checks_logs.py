@@ -24,7 +24,7 @@ def ask(log, target):
 
 
 @pytest.mark.parametrize('node', ['ik_solver', 'ik_one_line'])
-def test_an_answer_is_an_answer_in_any_layout(node):
+def test_angles_and_warnings_are_found_in_any_layout(node):
     with running(node), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         log.expect_angles(ANGLES)
@@ -45,7 +45,7 @@ class LogsMuch(IKSolver):
         self.get_logger().info('7.5 ' * 120_000)
 
 
-def test_what_would_take_forever_to_read_is_not_read():
+def test_a_log_that_is_too_long_fails_instead_of_being_read():
     """Otherwise the grader would give up after 150 s, twice, and leave it to a person."""
     live.run(LogsMuch)
     words = 'the answer to one target in the log of /ik_solver_node, saw 480,000 characters: log'
@@ -59,7 +59,7 @@ def test_what_would_take_forever_to_read_is_not_read():
 
 
 @pytest.mark.slow
-def test_a_callback_that_warns_and_raises_does_not_go_on():
+def test_a_callback_that_warns_and_then_raises_fails():
     live.run(WarnsAndRaises)
     try:
         with rosout('ik_solver_node') as log:
@@ -79,7 +79,7 @@ class HasNoLog(Node):
 
 
 @pytest.mark.slow
-def test_a_node_whose_log_is_turned_off_is_told_so():
+def test_a_node_whose_log_is_turned_off_fails_with_advice():
     live.run(HasNoLog)
     reason = 'expected the log of /ik_solver_node on /rosout, saw none: leave enable_rosout=False'
     try:
@@ -90,7 +90,7 @@ def test_a_node_whose_log_is_turned_off_is_told_so():
 
 
 @pytest.mark.slow
-def test_another_level_is_named_as_such():
+def test_an_info_record_in_place_of_a_warning_is_reported():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match=r'saw no WARN record but .* needs the level WARN'):
@@ -107,7 +107,7 @@ def test_another_level_is_named_as_such():
         ('ik_warns_first', "saw 'careful': warn only when"),
     ],
 )
-def test_a_near_miss_is_told_what_is_missing(node, reason):
+def test_a_near_miss_fails_with_its_fault(node, reason):
     with running(node), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match=reason):
@@ -115,7 +115,7 @@ def test_a_near_miss_is_told_what_is_missing(node, reason):
 
 
 @pytest.mark.slow
-def test_what_was_logged_at_another_level_is_shown():
+def test_a_warning_in_place_of_an_info_record_is_shown():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
         words = (
@@ -141,7 +141,7 @@ def test_an_answer_to_an_older_question_does_not_count():
 
 
 @pytest.mark.slow
-def test_the_target_is_named():
+def test_a_failure_names_the_target_point():
     with running('ik_one_branch'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match=r'° for \(1\.200, 0\.800\) in the INFO log of /ik'):
@@ -149,7 +149,7 @@ def test_the_target_is_named():
 
 
 @pytest.mark.slow
-def test_no_warning_is_a_failure():
+def test_a_missing_warning_fails():
     with running('ik_solver'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match='expected a warning in the log of /ik_solver_node'):
@@ -180,7 +180,7 @@ def test_a_second_warning_is_no_answer_to_the_next_target():
 
 
 @pytest.mark.slow
-def test_what_is_repeated_of_the_target_before_is_no_answer_to_the_next():
+def test_a_repeated_answer_does_not_count_for_the_next_target():
     with running('ik_repeats'), rosout('ik_solver_node') as log:
         ask(log, TOO_FAR)
         log.expect_warning()
@@ -194,7 +194,7 @@ def test_what_is_repeated_of_the_target_before_is_no_answer_to_the_next():
 
 
 @pytest.mark.slow
-def test_an_answer_behind_the_warning_is_one_too_many_though_it_was_right_before():
+def test_angles_logged_after_a_warning_fail_even_if_right_for_an_earlier_target():
     with running('ik_clings'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         log.expect_angles(ANGLES)
@@ -204,14 +204,14 @@ def test_an_answer_behind_the_warning_is_one_too_many_though_it_was_right_before
 
 
 @pytest.mark.slow
-def test_a_warning_behind_the_answer_is_not_about_the_target_before():
+def test_a_warning_after_the_answer_is_not_excused_by_an_earlier_target():
     with running('ik_always_warns'), rosout('ik_solver_node') as log:
         ask(log, TARGET)
         with pytest.raises(CheckFailed, match="saw 'careful': warn only when"):
             log.expect_angles(ANGLES, may_lag=True, free_sec=1.0)
 
 
-def test_another_name_is_the_cause_where_a_node_runs(monkeypatch):
+def test_a_running_node_of_another_name_is_named_as_the_cause(monkeypatch):
     monkeypatch.setattr('my_robot_basics.checks.node_log.NODE_SEC', 3.0)
     words = r"saw /ik_solver_node: .* super\(\)\.__init__\('ik'\)"
     with running('ik_solver'), pytest.raises(CheckFailed, match=words):
@@ -229,7 +229,7 @@ class SaysMore(IKSolver):
         super().solve(point)
 
 
-def test_who_logs_where_each_target_is_gives_no_angles(run):
+def test_logged_positions_of_targets_do_not_count_as_angles(run):
     run(SaysMore)
     with rosout('ik_solver_node') as log:
         for x in 3.0, 0.05:
@@ -242,7 +242,7 @@ def test_who_logs_where_each_target_is_gives_no_angles(run):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('angles_deg', [(12.34, 56.78), (0.0, 0.0)])
-def test_other_angles_in_the_form_of_an_answer_are_angles_too(run, angles_deg):
+def test_invented_angles_in_the_form_of_an_answer_fail(run, angles_deg):
     class Invents(IKSolver):
         def solve(self, point):
             super().solve(point)
@@ -262,7 +262,7 @@ def test_other_angles_in_the_form_of_an_answer_are_angles_too(run, angles_deg):
             log.expect_warning()
 
 
-def test_each_angle_belongs_to_its_branch(run):
+def test_angles_paired_across_branches_fail(run):
     class MixesUp(IKSolver):
         def report(self, solutions):
             (up, elbow_up), (down, elbow_down) = solutions.values()
@@ -315,7 +315,7 @@ class SkipsEqual(IKSolver):
 
 
 @pytest.mark.slow
-def test_a_target_that_is_equal_to_the_one_before_is_one_more_target():
+def test_a_repeated_target_needs_an_answer_of_its_own():
     live.run(SkipsEqual)
     try:
         with rosout('ik_solver_node') as log:
@@ -343,7 +343,7 @@ class LogsInOneLine(IKSolver):
 
 
 @pytest.mark.slow
-def test_one_line_for_two_levels_is_told_from_an_error_of_ik():
+def test_one_log_call_for_two_levels_fails_with_its_cause():
     live.run(LogsInOneLine)
     words = 'severity cannot be changed between calls.*, so log each level in a line of its own'
     try:

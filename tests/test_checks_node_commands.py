@@ -94,21 +94,21 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(('rest', 'words'), MISTAKES, ids=[rest for rest, _ in MISTAKES])
-def test_each_mistake_is_named(start, rest, words):
+def test_each_mistake_in_a_command_line_is_named(start, rest, words):
     start(right=f'{START} {rest}')
     with pytest.raises(CheckFailed, match=words):
         look()
 
 
 @pytest.mark.slow
-def test_two_arms_on_one_topic_are_told(start):
+def test_two_publishers_on_one_topic_are_named(start):
     start(left=LEFT, right=RIGHT.replace(':=joint_states', ':=/left/joint_states'))
     words = 'expected one publisher on /left/joint_states, saw /left/arm, /right/arm'
     with pytest.raises(CheckFailed, match=words):
         look()
 
 
-def test_a_text_that_starts_something_else_is_told(start, monkeypatch):
+def test_a_command_line_of_another_executable_fails(start, monkeypatch):
     start()
     monkeypatch.setattr(sys.modules['__main__'], 'left_arm', 'ros2 run my_robot_basics hello_node')
     with pytest.raises(
@@ -118,7 +118,7 @@ def test_a_text_that_starts_something_else_is_told(start, monkeypatch):
 
 
 @pytest.mark.slow
-def test_other_poses_than_those_of_the_seed_are_told(start):
+def test_poses_of_another_seed_fail(start):
     start(left=LEFT + ' -p seed:=8')
     left = node_command('left_arm', '/left/arm')
     with pytest.raises(CheckFailed, match='expected a pose of the seed 7 on /left/joint_states'):
@@ -141,7 +141,7 @@ class Arm(Node):
 
 
 @pytest.mark.slow
-def test_nodes_that_the_command_lines_do_not_start_are_told(start):
+def test_nodes_that_the_command_lines_did_not_start_are_refused(start):
     start(left=START, right=START)
     live.run(Arm, 'left', 1, key='left')
     live.run(Arm, 'right', 7, key='right')
@@ -176,7 +176,7 @@ def test_a_command_line_is_read_as_rcl_reads_it(options, found):
     ],
     ids=range(6),
 )
-def test_what_rcl_refuses_starts_nothing(options):
+def test_a_command_line_that_rcl_refuses_yields_no_node(options):
     assert read(options) is None
 
 
@@ -189,7 +189,7 @@ def read(options):
     )
 
 
-def test_a_node_that_is_made_to_read_a_line_is_met_by_nobody(monkeypatch):
+def test_a_node_made_to_read_a_command_line_is_not_discovered(monkeypatch):
     met, destroy = [], Node.destroy_node
     with Watcher() as watcher:
 

@@ -106,7 +106,7 @@ def course(tmp_path_factory):
 
 @pytest.mark.slow
 @pytest.mark.isolation
-def test_right_ones_earn_all_and_wrong_ones_read_the_cause(course):
+def test_right_answers_earn_all_points_and_wrong_ones_get_the_cause(course):
     for student, answers in (('right', RIGHT), ('wrong', WRONG)):
         notebook = course.release(LESSON)
         for cell in notebook.cells:

@@ -14,7 +14,9 @@ from my_robot_basics.feedback.errors import CheckFailed, Starved
     [(True, GONE_SEC, CheckFailed), (False, GONE_SEC, Starved), (True, 1.0, Starved)],
     ids=['it lives', 'nobody answers', 'the machine is busy'],
 )
-def test_what_answers_no_more_may_be_a_name_alone(monkeypatch, answers, free_sec, doubt):
+def test_a_node_left_on_the_graph_is_blamed_on_its_program_only_if_it_answers(
+    monkeypatch, answers, free_sec, doubt
+):
     watch = SimpleNamespace(free_sec=lambda: free_sec)
     monkeypatch.setattr(package_processes, 'Stopwatch', lambda: watch)
     monkeypatch.setattr(package_processes, 'answers_parameters', lambda *_: answers)
@@ -52,7 +54,7 @@ def test_a_program_that_ended_gets_advice_for_its_exit_code(monkeypatch, code, w
         ('expect_clean_end', 2, 'in main, catch KeyboardInterrupt'),
     ],
 )
-def test_a_crash_is_told_by_its_likely_cause(monkeypatch, end, code, hint):
+def test_a_bad_exit_code_fails_with_its_likely_cause(monkeypatch, end, code, hint):
     program = RunningExecutable('greeter', 'greet', ())
     monkeypatch.setattr(program, '_state', lambda: (code, ''))
     for name in ('expect_running', '_ask', '_wait_for_end'):

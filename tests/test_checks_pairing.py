@@ -71,16 +71,16 @@ def test_solutions_may_be_logged_in_many_ways(texts):
         ['θ1_up 65.92 θ2_up 74.04 θ1_down 1.46 θ2_down -74.04'],
     ],
 )
-def test_an_angle_with_the_other_branchs_angle_is_mixed_up(texts):
+def test_angles_paired_across_branches_are_mixed_up(texts):
     assert pairing.are_mixed_up(SOLUTIONS, texts)
 
 
-def test_angles_that_are_alike_accuse_nobody():
+def test_nearly_equal_angles_are_not_called_mixed_up():
     alike = [(30.0, 30.005), (30.0, -30.005)]
     assert not pairing.are_mixed_up(alike, [by_turns((30.0, -30.005), (30.0, 30.005))])
 
 
-def test_what_is_sorted_by_turns_accuses_nobody():
+def test_sorted_angles_are_not_called_mixed_up():
     solutions = [(-150.0, -74.04), (-100.0, 74.04)]
     texts = ['-150.0 -100.0 -74.04 74.04', '74.04 -74.04 -100.0 -150.0']
     assert not pairing.are_mixed_up(solutions, texts)

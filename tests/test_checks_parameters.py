@@ -56,14 +56,14 @@ def test_an_honest_way_passes(run, NodeClass):
 
 
 @pytest.mark.parametrize('NodeClass', [adjustable.ReadsInEachTick, adjustable.SleepsInAThread])
-def test_an_honest_way_passes_at_each_rate_that_may_be_asked_for(run, NodeClass):
+def test_an_honest_way_passes_at_each_rate_that_a_check_may_set(run, NodeClass):
     run(NodeClass)
     # 20 Hz: who looks at the clock every 10 ms needs steps that 10 ms are a multiple of
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_follows(12.5, 25.0, 4.0, 20.0)
 
 
-def test_who_remembers_the_robots_time_is_waited_for_on_the_wall_clock(run, monkeypatch):
+def test_a_wall_recording_waits_for_a_node_that_remembers_simulated_time(run, monkeypatch):
     def drive_in_vain(driven, **_):
         for _ in range(60):
             driven.tick(100_000_000)
@@ -116,7 +116,7 @@ OF_BOTH = [
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_THE_RATE)
-def test_a_mistake_with_the_rate_fails_that_check_alone(run, NodeClass, words):
+def test_a_mistake_with_the_rate_fails_only_the_check_of_the_rate(run, NodeClass, words):
     run(NodeClass)
     with pytest.raises(CheckFailed, match=words):
         look_at_the_rate()
@@ -125,7 +125,7 @@ def test_a_mistake_with_the_rate_fails_that_check_alone(run, NodeClass, words):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_REFUSALS)
-def test_a_mistake_with_refusals_fails_that_check_alone(run, NodeClass, words):
+def test_a_mistake_with_refusals_fails_only_the_check_of_refusals(run, NodeClass, words):
     run(NodeClass)
     look_at_the_rate()
     with pytest.raises(CheckFailed, match=words):
@@ -161,7 +161,7 @@ class OldTimers:
         return self.set(name, value)[0]
 
 
-def test_a_rate_that_is_a_text_once_a_value_was_refused_is_told(monkeypatch):
+def test_a_rate_that_becomes_a_text_after_a_refusal_fails(monkeypatch):
     told = iter([5.0, 'a text'])
     refused = SetParametersResult(successful=False, reason='no')
     monkeypatch.setattr(NodeParameters, 'get', lambda self, name: next(told))
@@ -172,20 +172,20 @@ def test_a_rate_that_is_a_text_once_a_value_was_refused_is_told(monkeypatch):
         expect_all_refused(NodeParameters('/node'), 'rate_hz', 5.0, [60.0])
 
 
-def test_timers_that_run_on_are_no_mistake_with_refusals(monkeypatch):
+def test_timers_that_keep_running_do_not_fail_the_check_of_refusals(monkeypatch):
     timers = OldTimers(monkeypatch, of_any=False)
     RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(0.0, -3.0, 0.5, 51.0, 70.0)
     assert timers.measured == 2
 
 
 @pytest.mark.parametrize('rates_hz', [(0.5, 60.0), (0.0, -3.0, 0.5, 51.0)])
-def test_a_timer_of_a_refused_value_is_one_beside_those_that_run_on(monkeypatch, rates_hz):
+def test_a_timer_of_a_refused_value_fails_even_beside_older_timers(monkeypatch, rates_hz):
     timers = OldTimers(monkeypatch, of_any=True)
     with pytest.raises(CheckFailed, match='change the timer only if none is refused'):
         RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(*rates_hz)
 
 
-def test_a_node_that_is_as_fast_as_it_can_changes_nothing_by_refusing(monkeypatch):
+def test_a_node_that_publishes_as_fast_as_it_can_passes_the_check_of_refusals(monkeypatch):
     timers = OldTimers(monkeypatch, of_any=False)
     rates_hz = iter([3_000.0, 1_500.0, 2_000.0, 900.0])
     monkeypatch.setattr(RateParameter, '_measure', lambda *_: (next(rates_hz), CheckFailed))
@@ -194,14 +194,14 @@ def test_a_node_that_is_as_fast_as_it_can_changes_nothing_by_refusing(monkeypatc
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('NodeClass', 'words'), OF_BOTH)
-def test_what_keeps_all_from_working_fails_both(run, NodeClass, words):
+def test_a_fundamental_mistake_fails_both_checks(run, NodeClass, words):
     run(NodeClass)
     for look in look_at_the_rate, look_at_refusals:
         with pytest.raises(CheckFailed, match=words):
             look()
 
 
-def test_a_callback_that_judges_other_parameters_is_told_so(run):
+def test_a_callback_that_refuses_other_parameters_fails_with_advice(run):
     run(adjustable.RefusesOthers)
     words = 'use_sim_time, another parameter, to be set, .* check only those whose name is'
     with pytest.raises(CheckFailed, match=words):
@@ -225,7 +225,7 @@ FORMLESS = {
 
 
 @pytest.mark.parametrize('response', FORMLESS.values(), ids=FORMLESS)
-def test_services_of_their_own_that_answer_in_no_form_are_named(monkeypatch, response):
+def test_malformed_answers_of_parameter_services_fail_with_advice(monkeypatch, response):
     """Otherwise they would stop the check, and a person would have to grade instead of a zero."""
     monkeypatch.setattr(NodeParameters, '_call', lambda *_: response)
     parameters = NodeParameters('/adjustable_publisher')

@@ -50,7 +50,7 @@ def is_busy(request, monkeypatch):
 
 @pytest.mark.usefixtures('is_busy')
 @pytest.mark.parametrize('loses', [lambda pair: False, lambda pair: pair < 4])
-def test_who_loses_the_first_pairs_alone_keeps_both(loses):
+def test_a_node_that_loses_only_its_first_pairs_passes(loses):
     assert not loses_one_of_two(loses)
 
 
@@ -59,7 +59,7 @@ def test_who_loses_the_first_pairs_alone_keeps_both(loses):
     'loses',
     [lambda pair: True, lambda pair: pair % 15 != 5, lambda pair: pair not in (5, 12)],
 )
-def test_who_mostly_lets_out_one_of_two_loses_the_other(loses):
+def test_a_node_that_mostly_loses_one_message_of_two_is_detected(loses):
     assert loses_one_of_two(loses)
 
 
@@ -68,7 +68,7 @@ def test_a_busy_machine_may_lose_most_pairs_of_a_short_queue(is_busy):
 
 
 @pytest.mark.usefixtures('is_busy')
-def test_a_slow_timer_that_publishes_between_the_two_keeps_no_pair():
+def test_a_slow_timer_that_fires_between_two_messages_is_detected():
     """On a busy machine, its period ended inside every seventh pair, which gave it points."""
     assert loses_one_of_two(lambda pair: pair % 7 != 5, apart_ns=SEC // 2)
 
@@ -78,7 +78,7 @@ def test_a_slow_timer_that_publishes_between_the_two_keeps_no_pair():
     [(range(3, 8), 3, False), (range(6, 8), 0, True), (range(1), 0, True), (range(0), 0, True)],
     ids=['received late', 'received too late', 'received once', 'not received'],
 )
-def test_what_others_sent_before_they_were_received_is_not_invented(
+def test_messages_of_other_publishers_received_late_do_not_count_as_invented(
     monkeypatch, received, began_sec, invents
 ):
     monkeypatch.setattr(passage_module.time, 'time_ns', lambda: began_sec * SEC)
@@ -93,12 +93,12 @@ def test_what_others_sent_before_they_were_received_is_not_invented(
 @pytest.mark.parametrize(
     ('row_sec', 'fewest'), [(0.0, 120), (2.4, 120), (2.5, 24), (3.9, 24), (4.0, 12), (60.0, 12)]
 )
-def test_fewer_in_a_row_are_enough_of_a_slow_node(row_sec, fewest):
+def test_a_slow_node_needs_fewer_messages_in_a_row(row_sec, fewest):
     assert fewest_in_a_row(SimpleNamespace(wall_sec=lambda: row_sec)) == fewest
 
 
 @pytest.mark.parametrize(('is_timer', 'invents'), [(False, False), (True, True)])
-def test_copies_that_were_in_a_queue_are_not_invented(monkeypatch, is_timer, invents):
+def test_repeated_messages_from_a_queue_do_not_count_as_invented(monkeypatch, is_timer, invents):
     """A slow node passes on late what it was sent again and again; a timer goes on with it."""
     monkeypatch.setattr(passage_module.time, 'time_ns', lambda: 0)
     node = Node(lambda pair: False)
@@ -132,7 +132,7 @@ class SlowNode:
 
 
 @pytest.mark.parametrize(('slow_sec', 'lost'), [(0.01, 0), (0.3, 0), (5.0, 4)])
-def test_a_message_that_is_late_is_not_pushed_out_of_a_short_queue_by_the_next(slow_sec, lost):
+def test_a_slightly_late_message_is_not_pushed_out_of_a_queue_of_depth_1(slow_sec, lost):
     """Four such calls on a busy machine were enough for "messages that are not republished"."""
     node = SlowNode(lambda number: slow_sec if number in (3, 9, 15, 21) else 0.001)
     watcher = SimpleNamespace(spin_for=lambda _: None, spin_until_free=node.spin)
@@ -172,7 +172,7 @@ def test_a_message_is_sent_again_if_another_publisher_may_have_pushed_it_out(
 
 
 @pytest.mark.usefixtures('is_busy')
-def test_a_message_that_is_lost_each_time_is_not_pushed_out():
+def test_a_message_that_is_lost_again_when_resent_counts_as_lost():
     faults = carried_beside_another_publisher(
         lambda number, message: message % 10 == 3, others_publish=True
     )
@@ -180,14 +180,14 @@ def test_a_message_that_is_lost_each_time_is_not_pushed_out():
 
 
 @pytest.mark.usefixtures('is_busy')
-def test_many_losses_are_no_coincidence_even_beside_another_publisher():
+def test_many_losses_fail_even_beside_another_publisher():
     faults = carried_beside_another_publisher(
         lambda number, message: number % 3 != 0, others_publish=True
     )
     assert not faults.is_whole()
 
 
-def test_a_message_that_was_sent_again_may_come_out_twice(monkeypatch):
+def test_a_message_that_was_sent_again_may_be_republished_twice(monkeypatch):
     """The first copy was only late."""
     monkeypatch.setattr(pairs.Stopwatch, 'is_busy', lambda _: True)
 
@@ -204,7 +204,7 @@ def test_a_message_that_was_sent_again_may_come_out_twice(monkeypatch):
 
 
 @pytest.mark.parametrize(('lost', 'is_named'), [(2, False), (3, True), (4, True)])
-def test_two_of_a_kind_name_no_cause(lost, is_named):
+def test_two_lost_messages_of_a_kind_name_no_cause(lost, is_named):
     """A node that drops every eleventh lost two negative ones by chance, on a busy machine."""
     fault, _ = RelayFaults(late=lost, lost=('with zeros',) * lost).fault()
     assert fault.endswith('those with zeros') == is_named
@@ -220,7 +220,7 @@ def test_two_of_a_kind_name_no_cause(lost, is_named):
     ],
     ids=['overtaken', 'by fewer', 'by nobody else', 'on an idle machine'],
 )
-def test_a_message_may_be_pushed_out_by_several_of_others_on_a_busy_machine(
+def test_a_message_may_be_pushed_out_by_several_others_on_a_busy_machine(
     overtaking, others_publish, is_busy, may_be
 ):
     watch = SimpleNamespace(is_busy=lambda: is_busy)
@@ -230,7 +230,9 @@ def test_a_message_may_be_pushed_out_by_several_of_others_on_a_busy_machine(
 @pytest.mark.parametrize(
     ('on_source', 'others_publish'), [({'/relay'}, False), ({'/relay', '/arm'}, True)]
 )
-def test_others_are_nodes_that_publish_on_the_source_alone(on_source, others_publish):
+def test_nodes_that_publish_only_on_the_source_count_as_other_publishers(
+    on_source, others_publish
+):
     source = SimpleNamespace(publishers=lambda: on_source)
     out = SimpleNamespace(publishers=lambda: {'/relay'})
     assert Recorder.has_other_publishers(source, out) is others_publish

@@ -12,7 +12,7 @@ PNG = b'\x89PNG\r\n\x1a\n'
 @pytest.mark.parametrize('clock', ['simulated', 'wall'])
 @pytest.mark.parametrize('hz', [None, 5.0])
 @pytest.mark.parametrize('times', [every(0.2), every(1.0, 3), []])
-def test_arrivals(clock, hz, times):
+def test_the_picture_of_arrivals_is_a_reproducible_png(clock, hz, times):
     picture = pictures.arrivals(recording(times, clock=clock), hz=hz)
     assert picture.startswith(PNG)
     assert picture == pictures.arrivals(recording(times, clock=clock), hz=hz)
@@ -25,7 +25,7 @@ def test_arrivals(clock, hz, times):
         ('assert_positions_rad', {'low': (-1.0, -1.0), 'high': (1.0, 1.0)}),
     ],
 )
-def test_one_picture_is_shown_with_the_sentence(monkeypatch, assertion, arguments):
+def test_one_picture_is_shown_with_the_failure_message(monkeypatch, assertion, arguments):
     shown = []
     monkeypatch.setattr(errors, 'show', lambda picture, *, alt: shown.append((picture, alt)))
     made = recording(message=lambda time: joint_state(time, position=[23.4, -40.0]))
@@ -41,7 +41,7 @@ def test_an_arm_with_more_joints_has_no_picture():
 
 
 @pytest.mark.starts
-def test_show_displays_in_a_notebook(monkeypatch, capsys):
+def test_show_displays_only_in_a_notebook(monkeypatch, capsys):
     InteractiveShell.instance()
     errors.show(pictures.arrivals(recording(), hz=5.0), alt='five')
     InteractiveShell.clear_instance()

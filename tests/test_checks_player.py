@@ -77,7 +77,7 @@ RIGHT = (
 
 
 @pytest.mark.parametrize('variant', RIGHT)
-def test_who_plays_right_passes_in_whatever_way(play, variant):
+def test_each_correct_way_to_visit_targets_passes(play, variant):
     play(variant, VISIBLE, first_goal_sec=1.5)
     play(variant, player.choose(random.Random(5)), arm_first=True)
 
@@ -106,13 +106,13 @@ WRONG = {
 
 
 @pytest.mark.parametrize('variant', WRONG)
-def test_what_is_wrong_is_named(play, variant):
+def test_each_wrong_program_fails_with_its_cause(play, variant):
     targets = [('succeeded', 0.9, -0.7), *VISIBLE[1:]] if variant == 'FixedTargets' else VISIBLE
     with pytest.raises(CheckFailed, match=WRONG[variant]):
         play(variant, targets)
 
 
-def test_a_node_has_to_go_on_for_some_time_after_its_report(play):
+def test_a_node_that_ends_soon_after_its_report_fails(play):
     with pytest.raises(CheckFailed, match='it ended'):
         play('SleepsAfterTheReport', VISIBLE, stays_sec=player_report.STAYS_SEC)
 
@@ -132,7 +132,7 @@ def test_advice_about_a_wrong_report_fits_its_words(seen, advice):
     assert player_report._why_wrong(seen, ['succeeded', 'unreachable']).startswith(advice)
 
 
-def test_who_does_not_wait_for_the_solver_is_told(play):
+def test_a_program_that_does_not_wait_for_the_solver_fails(play):
     with pytest.raises(CheckFailed, match='wait until there is a server'):
         play('NeverWaitsForTheSolver', VISIBLE, arm_first=True)
 
@@ -144,18 +144,18 @@ def test_who_does_not_wait_for_the_solver_is_told(play):
         (VISIBLE[1:3], 'publish one report, when the result of the last goal is there'),
     ],
 )
-def test_who_gives_up_a_goal_that_takes_three_seconds_is_told(play, targets, words):
+def test_a_program_that_gives_up_a_goal_after_a_second_fails(play, targets, words):
     with pytest.raises(CheckFailed, match=words):
         play('GivesUpAfterASecond', targets, first_goal_sec=3.0)
 
 
-def test_who_waits_for_the_result_of_a_rejected_goal_is_told(play):
+def test_a_program_that_waits_for_the_result_of_a_rejected_goal_fails(play):
     targets = [('succeeded', 1.2, 0.8), ('rejected', 0.9, -0.9), ('succeeded', -0.6, 0.9)]
     with pytest.raises(CheckFailed, match=r'is not accepted has no result|it ended'):
         play('WaitsForARejectedGoal', targets)
 
 
-def test_targets_are_chosen_apart_with_each_word():
+def test_chosen_targets_cover_each_outcome_and_repeat_one():
     targets = player.choose(random.Random(1))
     assert {word for word, _, _ in targets} == set(
         drawing.PlayerServers.__init__.__globals__['WORDS']
@@ -170,7 +170,7 @@ def test_an_unknown_word_is_refused():
 
 
 @pytest.mark.parametrize(('free_sec', 'doubt'), [(8.0, CheckFailed), (1.0, Starved)])
-def test_a_program_without_a_processor_is_not_to_blame(monkeypatch, free_sec, doubt):
+def test_a_missing_client_counts_as_starved_on_a_busy_machine(monkeypatch, free_sec, doubt):
     """It had no client after eight seconds on the wall clock, and most of them were not free."""
     monkeypatch.setattr(player_meeting, 'expect_no_other', lambda *_, own: None)
     monkeypatch.setattr(player_meeting.drawing_hints, 'why_no_client', lambda watcher: 'look')

@@ -37,11 +37,11 @@ def concluded(predictions, *situations):
 
 
 @pytest.mark.parametrize('yes', [True, np.bool_(True)])
-def test_what_happens_is_right(monkeypatch, yes):
+def test_predictions_that_match_what_happens_pass(monkeypatch, yes):
     concluded(predictions(monkeypatch, arrives=yes, is_lost=False), arrives, is_lost)
 
 
-def test_any_dict_will_do_with_keys_of_ones_own(monkeypatch):
+def test_any_kind_of_dict_with_additional_keys_passes(monkeypatch):
     answer = OrderedDict([('note', 'mine'), ('is_lost', False), ('arrives', True)])
     monkeypatch.setattr(sys.modules['__main__'], 'answer', answer, raising=False)
     concluded(Predictions('answer', KEYS), arrives, is_lost)
@@ -50,7 +50,7 @@ def test_any_dict_will_do_with_keys_of_ones_own(monkeypatch):
 EXPECTED = 'expected each prediction to match what happens when the check runs it'
 
 
-def test_each_wrong_prediction_is_named_with_its_why(monkeypatch):
+def test_each_wrong_prediction_is_named_with_its_reason(monkeypatch):
     with pytest.raises(CheckFailed) as failure:
         concluded(predictions(monkeypatch, arrives=False, is_lost=True), arrives, is_lost)
     assert str(failure.value) == (
@@ -85,14 +85,14 @@ def test_the_grader_learns_whether_a_visible_prediction_was_wrong(monkeypatch, a
     assert [text for text in displayed if text == 'already'] == told
 
 
-def test_what_is_only_a_part_leaves_none(monkeypatch):
+def test_wrong_predictions_leave_no_points_if_only_a_part_was_run(monkeypatch):
     with pytest.raises(CheckFailed) as failure:
         concluded(predictions(monkeypatch, arrives=False, is_lost=False), arrives)
     assert str(failure.value).startswith(f'{EXPECTED}, saw 1 of the 1 that this part runs wrong: ')
     assert not isinstance(failure.value, PartlyRight)
 
 
-def test_a_coin_earns_next_to_nothing():
+def test_guessing_earns_next_to_nothing():
     """Of nine predictions two are known from the visible part; the rest are thrown."""
     thrown = [math.comb(7, right) / 2**7 for right in range(8)]
     points = [{9: 2, 8: 1, 7: 1}.get(2 + right, 0) for right in range(8)]
@@ -111,12 +111,12 @@ def test_a_coin_earns_next_to_nothing():
         ({'arrives': [], 'is_lost': False}, r"for 'arrives', saw \[\]: write True"),
     ],
 )
-def test_a_dict_of_another_form_is_said_to_be_so(monkeypatch, answer, words):
+def test_a_dict_of_the_wrong_form_fails_with_advice(monkeypatch, answer, words):
     with pytest.raises(CheckFailed, match=words):
         predictions(monkeypatch, **answer)
 
 
-def test_anything_but_a_dict_is_said_to_be_so(monkeypatch):
+def test_an_answer_that_is_no_dict_fails(monkeypatch):
     monkeypatch.setattr(sys.modules['__main__'], 'answer', [True, False], raising=False)
     with pytest.raises(CheckFailed, match='expected `answer` to be a dict, saw a list'):
         Predictions('answer', KEYS)

@@ -11,20 +11,20 @@ TOLD = (
 )
 
 
-def test_what_linux_tells_is_read(monkeypatch, tmp_path):
+def test_the_stalled_time_that_linux_reports_is_read(monkeypatch, tmp_path):
     told = tmp_path / 'cpu'
     told.write_text(TOLD)
     monkeypatch.setattr(pressure, 'CPU', told)
     assert pressure.stalled_sec() == 28759.600458
 
 
-def test_a_linux_that_does_not_tell_counts_as_free(monkeypatch, tmp_path):
+def test_a_linux_without_a_pressure_file_counts_as_free(monkeypatch, tmp_path):
     monkeypatch.setattr(pressure, 'CPU', tmp_path / 'none')
     assert pressure.stalled_sec() == 0.0
 
 
 @pytest.mark.parametrize(('share', 'free_sec'), [(0.0, 4.0), (0.75, 1.0), (1.5, 0.0)])
-def test_only_time_that_was_free_counts(monkeypatch, share, free_sec):
+def test_free_time_excludes_the_stalled_share(monkeypatch, share, free_sec):
     now = [100.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: share * now[0])
@@ -35,7 +35,7 @@ def test_only_time_that_was_free_counts(monkeypatch, share, free_sec):
 
 
 @pytest.mark.parametrize(('idle_share', 'free_sec'), [(0.0, 0.02), (0.25, 1.02), (1.9, 4.0)])
-def test_no_more_time_was_free_than_processors_were_idle(monkeypatch, idle_share, free_sec):
+def test_free_time_is_at_most_the_idle_time_of_the_processors(monkeypatch, idle_share, free_sec):
     now = [100.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: 0.0)
@@ -47,9 +47,7 @@ def test_no_more_time_was_free_than_processors_were_idle(monkeypatch, idle_share
 
 
 @pytest.mark.parametrize(('share', 'turns'), [(0.0, 4), (0.5, 8), (0.95, 20), (1.0, 20)])
-def test_there_are_turns_until_enough_time_was_free_or_far_more_has_passed(
-    monkeypatch, share, turns
-):
+def test_free_turns_end_after_enough_free_time_or_five_times_as_long(monkeypatch, share, turns):
     now = [100.0]
     monkeypatch.setattr(pressure, 'time', types.SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: share * now[0])
@@ -69,7 +67,7 @@ def test_the_idle_time_of_all_processors_is_read(monkeypatch, tmp_path):
     assert pressure.idle_sec() == 234388.90
 
 
-def test_a_linux_that_tells_no_idle_time_counts_as_idle(monkeypatch, tmp_path):
+def test_a_linux_without_an_uptime_file_counts_as_idle(monkeypatch, tmp_path):
     monkeypatch.setattr(pressure, 'UPTIME', tmp_path / 'none')
     before_sec = pressure.idle_sec()
     watch = pressure.Stopwatch()

@@ -26,11 +26,11 @@ from my_robot_basics.checks import CheckFailed, rates
         ([0.2 * i + (0.2 if i > 25 else 0.0) for i in range(1, 50)], False),
     ],
 )
-def test_even_is_what_one_timer_explains(times, even):
+def test_messages_are_even_if_one_timer_explains_their_times(times, even):
     assert rates.is_even(recording(times)) is even
 
 
-def test_by_turns_too_early_and_too_late_is_uneven():
+def test_messages_alternately_early_and_late_are_uneven():
     turns = [0.2 * i - 0.1 * (i % 2) for i in range(1, 50)]
     assert rates.is_even(recording(turns))
     assert not rates.is_nearly_even(recording(turns, step_sec=0.02))
@@ -43,7 +43,7 @@ TURNS = [(0.15, 0.25), (0.18, 0.22), (0.15, 0.2, 0.25), (0.22, 0.22, 0.16), (0.2
 
 @pytest.mark.parametrize('turns', TURNS)
 @pytest.mark.parametrize('late_sec', [0.0, 0.01])
-def test_what_comes_by_turns_is_no_rate(turns, late_sec):
+def test_alternating_gaps_fail_as_unevenly_spaced(turns, late_sec):
     seed = random.Random(0)
     for seconds in 4.0, 8.0:
         gaps = itertools.islice(itertools.cycle(turns), round(5 * seconds))
@@ -52,7 +52,7 @@ def test_what_comes_by_turns_is_no_rate(turns, late_sec):
             recording(times, clock='wall', seconds=seconds).assert_rate(hz=5.0)
 
 
-def test_turns_are_seen_with_steps_of_the_clock_that_are_finer_than_they():
+def test_alternating_gaps_are_seen_with_finer_clock_steps():
     by_turns = list(itertools.accumulate([0.15, 0.25] * 8))
     for step_sec in 0.02, 0.05:
         times = [step_sec * math.ceil(time / step_sec - 1e-9) for time in by_turns]
@@ -62,7 +62,7 @@ def test_turns_are_seen_with_steps_of_the_clock_that_are_finer_than_they():
 
 
 @pytest.mark.parametrize('nth', [7, 10, 20, 50, 100])
-def test_a_message_that_is_left_out_again_and_again_leaves_no_doubt(nth):
+def test_a_message_left_out_regularly_fails_without_a_second_look(nth):
     times = [time for i, time in enumerate(every(0.2, 310), start=1) if (i + 3) % nth]
     made = recording(times, seconds=62.0, look_again=lambda _: pytest.fail('looked'))
     with pytest.raises(CheckFailed, match=f'saw one message of {nth} missing each time .*: publ'):
@@ -70,7 +70,7 @@ def test_a_message_that_is_left_out_again_and_again_leaves_no_doubt(nth):
 
 
 @pytest.mark.parametrize('missing', [(), (9,), (9, 19), (9, 19, 30), (9, 19, 29, 41)])
-def test_what_a_thread_misses_now_and_then_is_not_left_out(missing):
+def test_messages_missed_irregularly_do_not_count_as_left_out(missing):
     times = [time for i, time in enumerate(every(0.2, 300)) if i not in missing]
     assert not rates.leaves_out(recording(times, seconds=60.0))
 
@@ -80,7 +80,7 @@ def in_bursts(apart_sec, size, *, step_sec, seconds=6.0, **changes):
     return recording(times, step_sec=step_sec, seconds=seconds, **changes)
 
 
-def test_messages_that_come_at_once_each_time_leave_no_doubt():
+def test_regular_bursts_fail_without_a_second_look():
     finer = in_bursts(1.0, 5, step_sec=0.04)
     made = in_bursts(1.0, 5, step_sec=0.1, proof=finer, look_again=lambda _: pytest.fail('looked'))
     with pytest.raises(CheckFailed, match=r'saw 5 messages at once, every 1 s, over 6 s \(30'):
@@ -96,7 +96,7 @@ def test_messages_that_come_at_once_each_time_leave_no_doubt():
         recording(every(0.2, 30), step_sec=0.04, seconds=6.0),
     ],
 )
-def test_a_pattern_that_finer_steps_do_not_show_is_none(proof):
+def test_a_pattern_that_finer_steps_do_not_confirm_is_ignored(proof):
     assert rates.pattern_of(in_bursts(1.0, 5, step_sec=0.1)) is None
     assert rates.pattern_of(in_bursts(1.0, 5, step_sec=0.1, proof=proof)) is None
 
@@ -110,7 +110,7 @@ def at(gaps, *, step_sec, seconds=6.0, **changes):
     return recording(ticked, step_sec=step_sec, seconds=seconds, **changes)
 
 
-def test_two_timers_that_finer_steps_tell_apart_are_no_burst():
+def test_messages_that_finer_steps_separate_are_no_burst():
     finer = at([0.04, 0.16], step_sec=0.04)
     assert rates.pattern_of(in_bursts(0.2, 2, step_sec=0.1, proof=finer)) is None
 
@@ -127,12 +127,12 @@ def test_two_timers_that_finer_steps_tell_apart_are_no_burst():
         ([0.2], False),
     ],
 )
-def test_a_pattern_is_one_that_no_timer_makes_by_whatever_steps(gaps, is_one):
+def test_a_pattern_counts_only_if_no_single_timer_makes_it(gaps, is_one):
     made = at(gaps, step_sec=0.1, proof=at(gaps, step_sec=0.04))
     assert (rates.pattern_of(made) is not None) is is_one
 
 
-def test_messages_by_turns_leave_no_doubt_where_the_robots_clock_shows_them():
+def test_alternating_gaps_on_the_simulated_clock_fail_without_a_second_look():
     finer = at([0.1, 0.3], step_sec=0.04)
     made = at([0.1, 0.3], step_sec=0.1, proof=finer, look_again=lambda _: pytest.fail('looked'))
     with pytest.raises(CheckFailed, match=r'saw 0\.10 to 0\.30 s between messages over 6 s'):
@@ -152,13 +152,13 @@ def test_messages_by_turns_leave_no_doubt_where_the_robots_clock_shows_them():
         ([], None),
     ],
 )
-def test_a_pattern_comes_again_in_the_same_ticks(times, pattern):
+def test_a_pattern_is_found_if_it_repeats_in_the_same_ticks(times, pattern):
     made = recording([float(time) for time in times], seconds=4.0)
     found = rates.pattern_in(made)
     assert found == (pattern and pytest.approx(pattern))
 
 
-def test_pairs_and_plain_rates_are_not_taken_for_turns():
+def test_pairs_and_wrong_rates_are_not_called_unevenly_spaced():
     twice = [0.2 * (i // 2) + 0.001 * (i % 2) for i in range(2, 82)]
     with pytest.raises(CheckFailed, match='publish one message each time the timer fires'):
         recording(twice, clock='wall').assert_rate(hz=5.0)
@@ -166,7 +166,7 @@ def test_pairs_and_plain_rates_are_not_taken_for_turns():
         recording(every(0.02), clock='wall').assert_rate(hz=5.0)
 
 
-def test_on_the_wall_clock_the_largest_gap_counts():
+def test_bursts_fail_on_the_wall_clock_and_one_hiccup_passes():
     bursts = [i // 5 + 1.0 + 0.001 * (i % 5) for i in range(-5, 46)][6:]
     with pytest.raises(CheckFailed, match=r'saw pauses of 1\.0 s over 10 s \(45 messages\)'):
         recording(bursts, clock='wall').assert_rate(hz=5.0)

@@ -56,7 +56,7 @@ def test_a_period_of_0_is_named():
         made.assert_rate(hz=5.0)
 
 
-def test_far_too_many_messages_are_named_though_they_have_ended():
+def test_far_too_many_messages_fail_for_their_rate_even_if_they_ended():
     made = recording(every(0.002, 1500), clock='wall', seconds=4.0)
     assert made.is_over
     with pytest.raises(CheckFailed, match=r'saw 500.0 Hz .* another timer: make one, in __init__'):
@@ -97,7 +97,7 @@ def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
         ('wall', 0.04, False),
     ],
 )
-def test_a_rate_has_a_tolerance(clock, period_sec, passes):
+def test_a_rate_within_two_percent_passes(clock, period_sec, passes):
     made = recording(every(period_sec), clock=clock)
     if passes:
         made.assert_rate(hz=5.0)
@@ -126,7 +126,7 @@ def begun_late(period_sec=0.2, again_sec=0.2):
 
 
 @pytest.mark.parametrize('period_sec', [0.195, 0.205, 0.19, 0.21, 0.25, 1.0])
-def test_a_timer_that_two_steps_of_the_clock_agree_on_is_certain(period_sec):
+def test_a_wrong_period_fails_at_once_if_two_clock_steps_confirm_it(period_sec):
     with pytest.raises(CheckFailed, match=rf'saw {round(1 / period_sec, 2)} Hz over 10 s'):
         proven(period_sec).assert_rate(hz=5.0)
 
@@ -142,11 +142,11 @@ def test_a_timer_that_two_steps_of_the_clock_agree_on_is_certain(period_sec):
         begun_late(),
     ],
 )
-def test_a_period_that_the_steps_have_made_is_not(made):
+def test_a_right_period_passes_even_if_coarse_steps_distort_it(made):
     made.assert_rate(hz=5.0)
 
 
-def test_another_look_decides_where_the_mean_alone_is_off():
+def test_another_look_decides_if_only_the_mean_is_off():
     with pytest.raises(CheckFailed, match=r'saw 4\.88 Hz over 10'):
         begun_late(again_sec=0.205).assert_rate(hz=5.0)
 
@@ -165,7 +165,7 @@ def on_a_busy_machine(period_sec, *, seconds, is_loop=False, seed=0):
 
 @pytest.mark.parametrize('is_loop', [False, True])
 @pytest.mark.parametrize('seconds', [4.0, 8.0])
-def test_a_busy_machine_hides_no_period_and_makes_none(is_loop, seconds):
+def test_the_period_is_found_despite_a_busy_machine(is_loop, seconds):
     for seed in range(30):
         for period_sec, passes in (0.2, True), (0.195, False), (0.205, False):
             times = on_a_busy_machine(period_sec, seconds=seconds, is_loop=is_loop, seed=seed)
@@ -197,7 +197,7 @@ def test_a_doubt_on_the_wall_clock_asks_for_a_longer_look():
             look(first_sec, 0.205)
 
 
-def test_a_longer_look_with_pauses_takes_nothing_back():
+def test_a_longer_look_with_pauses_does_not_overrule_a_passing_first_look():
     def look(seconds):
         return recording(
             [*every(0.2, 20), *(0.4 + time for time in every(0.2, 40)[20:])], clock='wall'
@@ -218,7 +218,7 @@ def test_a_longer_look_with_pauses_takes_nothing_back():
         ('simulated', [0.2 * i + 0.1 * (i // 7) for i in range(1, 50)], [4.0]),
     ],
 )
-def test_a_second_look_decides_where_the_first_leaves_a_doubt(clock, times, looks):
+def test_a_second_look_decides_if_the_first_leaves_a_doubt(clock, times, looks):
     asked = []
 
     def look_again(seconds):
@@ -229,7 +229,7 @@ def test_a_second_look_decides_where_the_first_leaves_a_doubt(clock, times, look
     assert asked == looks
 
 
-def test_a_plain_timer_of_another_period_leaves_no_doubt():
+def test_a_plain_timer_of_another_period_fails_without_a_second_look():
     with pytest.raises(CheckFailed, match=r'saw 1\.0 Hz'):
         recording(every(1.0), look_again=lambda _: pytest.fail('looked')).assert_rate(hz=5.0)
 
@@ -246,7 +246,7 @@ def test_a_note_is_printed_when_the_rate_is_right(capsys):
 
 @pytest.mark.parametrize('clock', ['wall', 'simulated'])
 @pytest.mark.parametrize(('until_sec', 'passes'), [(3.8, True), (3.6, True), (2.0, False)])
-def test_messages_that_end_are_no_rate(until_sec, passes, clock):
+def test_messages_that_end_early_fail(until_sec, passes, clock):
     times = every(0.2, round(until_sec / 0.2))
     ending = recording(times, clock=clock, seconds=4.0)
     if passes:
@@ -259,12 +259,12 @@ def test_messages_that_end_are_no_rate(until_sec, passes, clock):
 
 
 @pytest.mark.parametrize('times', [[0.2], [0.2, 0.4], [0.4, 0.4]])
-def test_a_few_messages_whose_mean_is_right_are_no_rate(times):
+def test_a_few_messages_fail_even_if_their_mean_rate_is_right(times):
     with pytest.raises(CheckFailed, match=r'saw none in the last 9\.[68] s over 10 s'):
         recording(times).assert_rate(hz=5.0)
 
 
-def test_a_pause_at_the_end_is_one_of_those_before():
+def test_a_pause_at_the_end_is_reported_like_earlier_pauses():
     bursts = [start + 0.0625 * n for start in (0.0, 1.25, 2.5) for n in range(1, 7)]
     ending = recording(bursts, clock='wall', seconds=3.75)
     assert ending.has_ended
@@ -272,14 +272,14 @@ def test_a_pause_at_the_end_is_one_of_those_before():
         ending.assert_rate(hz=5.0)
 
 
-def test_no_message_in_another_look_says_that_they_end():
+def test_an_empty_second_look_reports_that_messages_ended():
     nothing = recording([], clock='wall', seconds=4.0)
     with pytest.raises(CheckFailed, match=r'saw some, and none any more over 4 s: publish'):
         nothing.assert_rate(hz=5.0)
 
 
 @pytest.mark.parametrize('clock', ['wall', 'simulated'])
-def test_a_flood_is_told_within_some_memory(clock):
+def test_a_flood_of_messages_is_judged_in_limited_memory(clock):
     flood = recording(every(0.0002, 50_000), clock=clock, message=lambda time: None)
     with resource_limit(3 * 2**30), pytest.raises(CheckFailed, match='the timer period is 0'):
         flood.assert_rate(hz=5.0)

@@ -25,7 +25,7 @@ def speaker():
 
 
 @pytest.mark.starts
-def test_a_publisher_that_offers_too_little_is_not_waited_for(speaker):
+def test_an_incompatible_publisher_is_not_waited_for(speaker):
     """A server of an action with feedback of BEST_EFFORT cost ten seconds in each check."""
     asked = {'/hidden': QoSProfile(depth=1), '/latched': LATCHED, '/fits': QoSProfile(depth=1)}
     with Watcher() as watcher:

@@ -18,13 +18,13 @@ LOW, HIGH = (-math.pi / 2, -2.1), (math.pi / 2, 2.1)
         (lambda time_sec: 90.0 * math.sin(time_sec), 'which looks like degrees'),
     ],
 )
-def test_an_angle_that_grows_and_grows_is_told_from_degrees(angle, seen):
+def test_an_ever_growing_angle_is_distinguished_from_degrees(angle, seen):
     made = recording(message=lambda time_sec: joint_state(time_sec, position=[angle(time_sec), 0]))
     with pytest.raises(CheckFailed, match=seen):
         made.assert_positions_rad(low=LOW, high=HIGH)
 
 
-def test_a_border_is_taken_as_it_is_often_written():
+def test_a_joint_limit_rounded_to_three_decimals_passes():
     right_angle = math.pi / 2
     for angle in right_angle, 1.5708, 1.571, -1.571:
         made = recording(
@@ -117,7 +117,7 @@ def test_a_stamp_is_near_the_clock(clock, off_sec, passes):
 
 
 @pytest.mark.parametrize('clock', ['simulated', 'wall'])
-def test_what_is_published_twice_is_told_from_a_stamp_that_stands_still(clock):
+def test_two_messages_at_once_with_one_stamp_are_reported_as_such(clock):
     twice = [time for time in every(0.2) for _ in range(2)]
     with pytest.raises(CheckFailed, match='two messages at once with the same stamp: publish one'):
         recording(twice, clock=clock).assert_stamps()
@@ -132,7 +132,7 @@ def test_what_is_published_twice_is_told_from_a_stamp_that_stands_still(clock):
         ('wall', 1.2, False),
     ],
 )
-def test_one_late_message_is_not_all_of_them(clock, off_sec, passes):
+def test_one_stamp_may_be_off_up_to_a_limit(clock, off_sec, passes):
     def one_late(time):
         return joint_state(time, stamp=START_SEC + time + (off_sec if time == 4.0 else 0.0))
 
@@ -145,7 +145,7 @@ def test_one_late_message_is_not_all_of_them(clock, off_sec, passes):
             made.assert_stamps()
 
 
-def test_another_type_is_named():
+def test_messages_of_another_type_are_named():
     made = recording(message=lambda time: Point())
     with pytest.raises(CheckFailed, match='expected messages with a name on /t, saw Point'):
         made.assert_joint_names(('joint1', 'joint2'))
@@ -153,7 +153,7 @@ def test_another_type_is_named():
 
 @pytest.mark.starts
 @pytest.mark.parametrize('assertion', ['assert_joint_names', 'assert_frame_id', 'assert_stamps'])
-def test_no_message_proves_nothing(assertion):
+def test_assertions_fail_without_any_message(assertion):
     arguments = {'assert_joint_names': [('joint1',)], 'assert_frame_id': ['base_link']}
     with pytest.raises(CheckFailed, match='expected messages on /t, saw none'):
         getattr(recording([]), assertion)(*arguments.get(assertion, []))

@@ -37,7 +37,7 @@ def impatient(monkeypatch):
 
 
 @pytest.mark.parametrize('offered', PROFILES.values(), ids=PROFILES)
-def test_a_monitor_passes_whatever_it_offers_and_nothing_is_said(run, capfd, offered):
+def test_a_monitor_passes_silently_with_any_offered_qos_profile(run, capfd, offered):
     run(monitor.JointStateMonitor, monitor=offered)
     capfd.readouterr()
     check_delivery()
@@ -53,7 +53,7 @@ def test_a_monitor_in_a_process_of_its_own_passes():
 
 
 @pytest.mark.slow
-def test_other_nodes_on_the_topics_are_no_hindrance(run):
+def test_a_monitor_passes_beside_other_nodes_on_its_topics(run):
     talker = run(Node, 'talker')
     sensor = talker.create_publisher(JointState, '/sensor/joint_states', qos_profile_sensor_data)
     latched = talker.create_publisher(String, '/arm_description', LATCHED)
@@ -89,14 +89,14 @@ class LooksAtHalf(Looks):
         return QoSProfile(depth=10, reliability=offered.reliability)
 
 
-def test_who_looks_for_publishers_first_may_ask_for_what_they_offer(run):
+def test_a_monitor_that_copies_the_publishers_qos_profile_passes(run):
     run(Looks)
     check_delivery()
     check_late_joiner()
 
 
 @pytest.mark.slow
-def test_who_looks_for_publishers_and_does_not_ask_for_what_was_said_is_named(run):
+def test_a_monitor_that_copies_only_the_reliability_fails_as_a_late_joiner(run):
     run(LooksAtHalf)
     for _ in range(3):
         with pytest.raises(CheckFailed, match='TRANSIENT_LOCAL, saw VOLATILE: request'):
@@ -104,7 +104,7 @@ def test_who_looks_for_publishers_and_does_not_ask_for_what_was_said_is_named(ru
 
 
 @pytest.mark.slow
-def test_a_publisher_that_waits_for_a_message_is_too_late(run, impatient):
+def test_a_publisher_created_only_upon_a_message_fails(run, impatient):
     class Lazy(monitor.JointStateMonitor):
         def pass_on(self, type_, source, to, asked, offered):
             def receive(message):
@@ -167,7 +167,9 @@ class DropsVelocity(Changes):
         (DropsVelocity, 'velocity'),
     ],
 )
-def test_a_message_of_which_a_field_was_changed_does_not_pass(run, impatient, node_class, field):
+def test_a_message_with_a_changed_field_fails_and_the_field_is_named(
+    run, impatient, node_class, field
+):
     run(node_class)
     with pytest.raises(CheckFailed, match=f'publish exactly .*; not the same: {field}$'):
         check_delivery()
@@ -175,7 +177,7 @@ def test_a_message_of_which_a_field_was_changed_does_not_pass(run, impatient, no
 
 
 @pytest.mark.slow
-def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
+def test_fields_that_a_task_does_not_name_may_change(run, impatient):
     class Renames(Changes):
         def other(self, message):
             return JointState(name=['elbow'], position=message.position)
@@ -197,7 +199,7 @@ def test_fields_that_a_task_does_not_name_may_be_others(run, impatient):
 
 
 @pytest.mark.slow
-def test_messages_that_nobody_sent_are_told(run):
+def test_invented_messages_fail(run):
     class Invents(monitor.JointStateMonitor):
         def __init__(self):
             super().__init__()
@@ -224,7 +226,7 @@ def test_messages_that_nobody_sent_are_told(run):
         ),
     ],
 )
-def test_a_subscription_that_asks_for_too_much_is_named(run, asked, reason):
+def test_a_subscription_with_an_incompatible_qos_profile_is_named(run, asked, reason):
     run(monitor.JointStateMonitor, sensor=asked)
     with pytest.raises(CheckFailed, match=reason):
         check_delivery()
@@ -239,7 +241,7 @@ def test_a_volatile_subscription_is_named(run, reliability):
 
 
 @pytest.mark.slow
-def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
+def test_a_requested_deadline_that_no_publisher_offers_is_named(run, impatient):
     asked = QoSProfile(
         depth=1,
         reliability=RELIABLE,
@@ -252,13 +254,13 @@ def test_a_promise_that_nobody_gives_is_named_to_a_late_joiner(run, impatient):
 
 
 @pytest.mark.slow
-def test_best_effort_receives_nothing_of_what_was_sent_before(run, impatient):
+def test_a_best_effort_subscription_fails_as_a_late_joiner(run, impatient):
     run(monitor.JointStateMonitor, description=PROFILES['BEST_EFFORT TRANSIENT_LOCAL'])
     with pytest.raises(CheckFailed, match='request RELIABLE, too: only then'):
         check_late_joiner()
 
 
-def test_a_message_that_was_changed_does_not_pass(run, impatient):
+def test_a_message_replaced_by_an_empty_one_fails(run, impatient):
     class Constant(monitor.JointStateMonitor):
         def changed(self, publish):
             return lambda message: publish(type(message)())
@@ -282,7 +284,7 @@ def test_a_callback_that_publishes_nothing_does_not_pass(run, impatient):
 
 
 @pytest.mark.slow
-def test_a_subscription_of_each_kind_is_no_choice(run):
+def test_subscriptions_with_every_qos_profile_at_once_fail(run):
     class Everything(monitor.JointStateMonitor):
         def pass_on(self, type_, source, to, asked, offered):
             publisher = self.create_publisher(type_, to, offered)
@@ -317,7 +319,7 @@ def test_the_wrong_topics_are_named(run, impatient):
 
 
 @pytest.mark.slow
-def test_the_node_at_the_other_end_is_not_at_fault(run):
+def test_a_failure_names_the_monitor_and_not_the_publishing_node(run):
     arm = run(Node, 'arm', key='arm')
     arm.create_publisher(JointState, '/sensor/joint_states', 10)
     run(Node, 'joint_state_monitor', key='monitor')

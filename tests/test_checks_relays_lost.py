@@ -161,7 +161,9 @@ def all_the_time(monkeypatch):
         (RepeatsTheLast, r'a message that is republished [2-5] times: subscribe once'),
     ],
 )
-def test_each_message_comes_out_at_once_and_once(run, all_the_time, node_class, reason):
+def test_a_relay_that_loses_delays_or_repeats_messages_fails(
+    run, all_the_time, node_class, reason
+):
     run(node_class)
     with pytest.raises(CheckFailed, match=reason):
         check_delivery()
@@ -181,7 +183,7 @@ class LeavesOutTheFirstHundred(monitor.JointStateMonitor):
 
 @pytest.mark.slow
 @pytest.mark.timeout(120)
-def test_no_first_hundred_may_be_left_out_however_long_that_takes(run, monkeypatch):
+def test_a_relay_that_drops_its_first_hundred_messages_fails(run, monkeypatch):
     turns = range(1, 201)  # of a machine that is busy all the time
     monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(turns))
     run(LeavesOutTheFirstHundred)
@@ -189,7 +191,7 @@ def test_no_first_hundred_may_be_left_out_however_long_that_takes(run, monkeypat
         check_delivery()
 
 
-def test_a_first_message_that_does_not_come_out_is_sent_now_and_then_for_ever(monkeypatch):
+def test_a_first_message_that_is_not_republished_is_resent_and_later_less_often(monkeypatch):
     monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(range(1, 201)))
     monkeypatch.setattr(relays.RelayEndpoints, 'why_lost', lambda *_, **__: 'look')
     watcher = SimpleNamespace(spin_until=lambda done, timeout_sec: done())
@@ -202,7 +204,7 @@ def test_a_first_message_that_does_not_come_out_is_sent_now_and_then_for_ever(mo
     assert len(sent) == 40 + 160 / 10
 
 
-def test_what_was_sent_again_and_again_is_known_to_those_that_look_for_others(run, monkeypatch):
+def test_the_passage_check_knows_the_first_message_that_was_resent(run, monkeypatch):
     earlier = []
 
     class Told(passage.Passage):
@@ -225,7 +227,7 @@ def leisurely(monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('leisurely')
-def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
+def test_a_relay_that_drops_every_hundredth_message_fails_given_enough_time(run):
     run(DropsEveryHundredth)
     with pytest.raises(CheckFailed, match='saw messages that are not republished'):
         check_delivery()
@@ -233,7 +235,7 @@ def test_every_hundredth_message_is_missed_where_the_machine_is_quick(run):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('leisurely')
-def test_every_hundredth_message_is_one_too_many_where_the_machine_is_quick(run):
+def test_a_relay_that_doubles_every_hundredth_message_fails_given_enough_time(run):
     run(DoublesEachHundredth)
     with pytest.raises(CheckFailed, match='a message that is republished 2 times: subscribe once'):
         check_delivery()
@@ -241,7 +243,7 @@ def test_every_hundredth_message_is_one_too_many_where_the_machine_is_quick(run)
 
 @pytest.mark.slow
 @pytest.mark.parametrize('node_class', [DropsEverySecond, DropsEveryEleventh])
-def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class):
+def test_a_relay_that_drops_messages_fails_even_without_time_left(run, monkeypatch, node_class):
     monkeypatch.setattr(enough, 'SOME_SEC', 0.0)
     monkeypatch.setattr(enough, 'LONG_SEC', 0.0)
     run(node_class)
@@ -250,7 +252,7 @@ def test_where_no_time_is_left_a_few_messages_tell(run, monkeypatch, node_class)
 
 
 @pytest.mark.slow
-def test_without_time_a_right_node_passes(run, monkeypatch):
+def test_a_correct_relay_passes_even_without_time_left(run, monkeypatch):
     monkeypatch.setattr(enough, 'SOME_SEC', 0.0)
     monkeypatch.setattr(enough, 'LONG_SEC', 0.0)
     monkeypatch.setattr(passage, 'MOST_SEC', 0.0)
@@ -259,7 +261,7 @@ def test_without_time_a_right_node_passes(run, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_description_that_comes_out_twice_is_one_too_many(run):
+def test_a_description_that_is_republished_twice_fails(run):
     run(Doubles)
     with pytest.raises(CheckFailed, match='a message that is republished 2 times: subscribe once'):
         check_late_joiner()
@@ -274,14 +276,14 @@ def test_a_description_that_comes_out_twice_is_one_too_many(run):
         (DropsEveryEleventh, 'saw messages that are not republished: publish in every call'),
     ],
 )
-def test_each_description_that_follows_comes_out_too(run, all_the_time, node_class, reason):
+def test_a_relay_that_drops_later_descriptions_fails(run, all_the_time, node_class, reason):
     run(node_class)
     with pytest.raises(CheckFailed, match=reason):
         check_late_joiner()
 
 
 @pytest.mark.slow
-def test_a_timer_that_has_only_the_latest_loses_one_of_two(run):
+def test_a_timer_that_republishes_only_the_latest_message_fails(run):
     class Latest(Counts):
         def __init__(self):
             self.latest = {}
@@ -305,7 +307,7 @@ def test_a_timer_that_has_only_the_latest_loses_one_of_two(run):
 
 
 @pytest.mark.slow
-def test_what_waits_for_a_timer_is_in_time(run):
+def test_a_queue_that_a_timer_republishes_passes(run):
     class Queues(Counts):
         def __init__(self):
             self.queue = []

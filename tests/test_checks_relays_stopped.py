@@ -73,7 +73,7 @@ class StandsStill(monitor.JointStateMonitor):
         (StandsStill, r'its callback has not returned \(line \d+: time\.sleep'),
     ],
 )
-def test_a_node_that_stops_between_two_messages_is_told_why(run, node_class, reason):
+def test_a_node_that_stops_between_two_messages_fails_with_the_cause(run, node_class, reason):
     run(node_class)
     with pytest.raises(CheckFailed, match=reason):
         check_delivery()
@@ -81,7 +81,7 @@ def test_a_node_that_stops_between_two_messages_is_told_why(run, node_class, rea
 
 @pytest.mark.slow
 @pytest.mark.timeout(120)
-def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch):
+def test_a_check_does_not_wait_for_a_message_on_which_a_callback_raised(run, monkeypatch):
     class Raises(monitor.JointStateMonitor):
         def changed(self, publish):
             def receive(message):
@@ -97,7 +97,7 @@ def test_a_message_at_which_a_callback_raised_is_not_waited_for(run, monkeypatch
 
 
 @pytest.mark.slow
-def test_what_a_callback_raised_before_the_check_is_not_of_the_other_topic(run):
+def test_an_earlier_exception_is_not_blamed_for_the_other_topic(run):
     class Raises(monitor.JointStateMonitor):
         def changed(self, publish):
             def receive(message):

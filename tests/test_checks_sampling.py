@@ -54,7 +54,7 @@ def test_a_wrong_rate_fails(node, seen):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
-def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monkeypatch):
+def test_a_timer_that_skips_every_twentieth_message_fails_at_once(monkeypatch):
     monkeypatch.setattr(
         wall_recording, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock')
     )
@@ -62,7 +62,7 @@ def test_a_timer_that_leaves_every_twentieth_out_fails_without_another_look(monk
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
 
 
-def test_messages_that_end_and_come_again_in_the_proof_are_looked_at_anew(monkeypatch):
+def test_an_early_end_that_the_proof_does_not_confirm_counts_as_uneven(monkeypatch):
     """A thread that got no processor during a recording has not ended."""
     ended, proof = recording(every(0.2, 8), seconds=10.0), recording(every(0.2, 8), seconds=1.6)
     monkeypatch.setattr(sampling, 'drive', lambda topic, **_: ended)
@@ -72,7 +72,7 @@ def test_messages_that_end_and_come_again_in_the_proof_are_looked_at_anew(monkey
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
-def test_on_a_busy_machine_the_clock_is_driven_for_a_shorter_time(monkeypatch):
+def test_the_clock_is_driven_for_a_shorter_time_on_a_busy_machine(monkeypatch):
     monkeypatch.setattr(SimulatedClock, 'takes_long', lambda clock: True)
     with running('well_equipped'):
         recording = topic(TOPIC).record(seconds=60.0)
@@ -93,7 +93,7 @@ def held(monkeypatch):
 
 
 @pytest.mark.usefixtures('patient')
-def test_who_may_ignore_the_clock_has_to_show_once_that_it_does(held):
+def test_a_node_that_may_ignore_the_clock_is_tested_once_with_it_standing_still(held):
     for node in 'five_hz', 'sleep_loop', 'five_hz':
         with running(node):
             topic(TOPIC).record(seconds=2.0)
@@ -123,7 +123,9 @@ def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
 @pytest.mark.parametrize(
     ('node', 'seen'), [('bursts', '5 messages at once, every 1 s'), ('pairs', '2 .*, every 0.4 s')]
 )
-def test_bursts_leave_no_doubt_on_the_robots_clock(monkeypatch, node, seen):
+def test_bursts_fail_on_the_simulated_clock_without_a_look_at_the_wall_clock(
+    monkeypatch, node, seen
+):
     monkeypatch.setattr(wall_recording, 'wall', lambda *args, **options: pytest.fail('looked'))
     with running(node):
         recording = topic(TOPIC).record()
@@ -143,7 +145,7 @@ def test_bursts_leave_no_doubt_on_the_robots_clock(monkeypatch, node, seen):
         (0.005, 15, False),
     ],
 )
-def test_a_pattern_is_driven_where_that_is_sooner_than_the_wall_clock(
+def test_a_pattern_is_simulated_if_this_is_faster_than_the_wall_clock(
     monkeypatch, step_sec, rate_hz, is_driven
 ):
     driven = []
@@ -172,7 +174,7 @@ def test_a_pattern_is_driven_where_that_is_sooner_than_the_wall_clock(
         ([0.0, 0.04, 0.08], True),
     ],
 )
-def test_who_ignores_the_clock_goes_on_while_it_stands_still(ignores, sent_sec):
+def test_a_node_that_keeps_publishing_while_the_clock_stands_still_ignores_it(ignores, sent_sec):
     began_ns = time.time_ns()
     recorder = object.__new__(Recorder)
     recorder.received = [(None, began_ns + round(sec * 1e9) + 1_000_000) for sec in sent_sec]
@@ -196,7 +198,7 @@ def reasons(monkeypatch):
 
 
 @pytest.mark.usefixtures('patient')
-def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(reasons):
+def test_a_callback_longer_than_its_period_is_judged_on_the_wall_clock(reasons):
     wanted = rf'expected 5\.0 Hz on {TOPIC}, saw [1-4]\.'
     with running('overruns'), pytest.raises(CheckFailed, match=wanted):
         topic(TOPIC).record().assert_rate(hz=5.0)
@@ -204,13 +206,13 @@ def test_who_works_for_longer_than_a_period_has_no_rate_on_the_robots_clock(reas
 
 
 @pytest.mark.usefixtures('patient')
-def test_the_clock_stands_still_before_finer_steps_prove_what_coarser_ones_do_not(held, reasons):
+def test_the_clock_stands_still_before_finer_steps_are_tried(held, reasons):
     with running('looks_too_early'):
         assert (topic(TOPIC).record(seconds=10.0).clock, reasons) == ('simulated', [])
     assert held == [driven_topic.SETTLE_SEC, 1.0]
 
 
-def test_a_drive_in_vain_is_a_short_one_the_second_time(monkeypatch):
+def test_the_second_drive_after_an_inconclusive_one_is_short(monkeypatch):
     asked = []
 
     def drive_in_vain(driven, *, seconds, step_sec):
@@ -278,7 +280,7 @@ def test_a_near_miss_fails_on_the_wall_clock(node, seen):
         ('no_parameter_services', True, False),  # no machine is to blame for that
     ],
 )
-def test_a_busy_machine_is_to_blame_where_the_clock_could_not_be_driven(
+def test_a_wall_recording_is_makeshift_if_a_busy_machine_prevented_simulation(
     monkeypatch, node, is_busy, is_makeshift
 ):
     monkeypatch.setattr(Stopwatch, 'is_busy', lambda watch: is_busy)

@@ -8,7 +8,7 @@ def draw(label):
     return inputs(label).random()
 
 
-def test_with_a_seed_a_label_gives_its_inputs_again(monkeypatch):
+def test_a_label_gives_the_same_inputs_for_the_same_seed(monkeypatch):
     monkeypatch.setenv('MY_ROBOT_BASICS_SEED', 'c0ffee')
     assert draw('reach') == draw('reach') != draw('other')
     before = draw('reach')
@@ -17,7 +17,7 @@ def test_with_a_seed_a_label_gives_its_inputs_again(monkeypatch):
 
 
 @pytest.mark.parametrize('seed', ['', None])
-def test_without_a_seed_they_differ(monkeypatch, seed):
+def test_inputs_differ_each_time_without_a_seed(monkeypatch, seed):
     monkeypatch.delenv('MY_ROBOT_BASICS_SEED', raising=False)
     if seed is not None:
         monkeypatch.setenv('MY_ROBOT_BASICS_SEED', seed)

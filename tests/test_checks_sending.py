@@ -24,14 +24,14 @@ def lost_so_often(times, sent):
 
 
 @pytest.mark.parametrize(('lost', 'sent_times'), [(0, 1), (3, 4), (1_000, ATTEMPTS)])
-def test_a_response_is_sent_again_until_its_client_is_met(recwarn, lost, sent_times):
+def test_a_response_is_sent_again_until_its_client_is_discovered(recwarn, lost, sent_times):
     sent = []
     send_until_met(lost_so_often(lost, sent))
     assert len(sent) == sent_times
     assert not recwarn.list
 
 
-def test_another_warning_is_shown(monkeypatch):
+def test_other_warnings_are_shown(monkeypatch):
     shown = []
     monkeypatch.setattr(
         sending.warnings, 'showwarning', lambda message, *_: shown.append(str(message))
@@ -61,7 +61,7 @@ def count_looks(node, service, *, unknown_times):
 
 @pytest.mark.starts
 @pytest.mark.usefixtures('client')
-def test_a_response_waits_until_dds_knows_who_reads_it():
+def test_a_response_waits_until_its_reader_is_discovered():
     with Watcher() as here:
         request = {'topic_name': 'rq/askRequest', 'no_mangle': True}
         assert here.spin_until(
@@ -73,7 +73,7 @@ def test_a_response_waits_until_dds_knows_who_reads_it():
 
 @pytest.mark.starts
 @pytest.mark.usefixtures('client')
-def test_whoever_has_asked_is_waited_for_before_the_graph_knows_them():
+def test_wait_for_readers_waits_until_the_asking_client_is_on_the_graph():
     with Watcher() as here:
         look_up, looks = here.node.get_publishers_info_by_topic, []
 

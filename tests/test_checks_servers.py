@@ -93,7 +93,7 @@ RIGHT = [IKClient, Awaits, Blocks, OwnThread, WorksOff]
 
 
 @pytest.mark.parametrize('node_class', RIGHT)
-def test_who_asks_right_passes_in_whatever_way(run, node_class):
+def test_each_correct_way_to_call_a_service_passes(run, node_class):
     run(node_class)
     check_asks()
     check_never_blocks()
@@ -122,14 +122,14 @@ def test_no_request_for_a_repeated_message_is_lost_when_the_server_leaves(run, m
 
 
 @pytest.mark.slow
-def test_a_program_of_its_own_passes():
+def test_a_node_run_as_a_separate_program_passes():
     with running('ik_client'):
         check_asks()
         check_never_blocks()
 
 
 @pytest.mark.slow
-def test_answers_come_out_of_order_where_the_server_says_so(run):
+def test_a_client_passes_if_the_server_answers_in_reverse_order(run):
     run(IKClient)
     with server() as serving:
         serving.hold()
@@ -152,14 +152,14 @@ class ServesLater(IKClient):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('check', [check_asks, check_never_blocks])
-def test_a_server_that_comes_later_is_found(run, check):
+def test_a_second_server_that_appears_later_fails_the_check(run, check):
     run(ServesLater)
     with pytest.raises(CheckFailed, match='no server of /solve_ik but that of this check, saw on'):
         check()
 
 
 @pytest.mark.slow
-def test_another_server_is_named(run):
+def test_a_second_server_is_named(run):
     run(IKClient)
     run(imported('ik_service').IKService)
     with pytest.raises(

@@ -98,7 +98,7 @@ RIGHT = [IKService, Coroutine, MakesItsOwnResponse, Reentrant, WholeTurnsOff]
 
 
 @pytest.mark.parametrize('node_class', RIGHT)
-def test_who_answers_right_passes_in_whatever_way(run, node_class):
+def test_each_correct_service_passes(run, node_class):
     run(node_class)
     check_answers()
     check_refusals()
@@ -122,7 +122,7 @@ class AnswersOften(Node):
                 self.server.handle.service_send_response(response, header.request_id)
 
 
-def test_the_first_response_counts_however_late_the_check_looks(run, monkeypatch):
+def test_the_first_response_counts_even_if_the_check_looks_late(run, monkeypatch):
     wait_for_all = services.wait_for_all
 
     def late(*arguments, **options):
@@ -135,7 +135,7 @@ def test_the_first_response_counts_however_late_the_check_looks(run, monkeypatch
 
 
 @pytest.mark.slow
-def test_a_program_of_its_own_passes():
+def test_a_node_run_as_a_separate_program_passes():
     with running('ik_service'):
         check_answers()
         check_refusals()
@@ -233,7 +233,7 @@ REFUSED_WRONG = [
 
 @pytest.mark.parametrize(('node_class', 'message'), REFUSED_WRONG)
 @pytest.mark.usefixtures('impatient')
-def test_who_does_not_refuse_is_told(run, node_class, message):
+def test_a_wrong_refusal_fails_with_its_cause(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_refusals()
@@ -272,7 +272,7 @@ class Busy(IKService):
     ],
 )
 @pytest.mark.usefixtures('impatient')
-def test_why_no_answer_comes_is_told(run, node_class, hint):
+def test_a_missing_response_fails_with_its_cause(run, node_class, hint):
     run(node_class)
     with pytest.raises(CheckFailed, match=r'expected an answer, saw none( in 1 s)?: ') as failure:
         solve_ik.call(ik.request(*TARGETS[0]))
@@ -295,7 +295,7 @@ class Elsewhere(Node):
     ],
 )
 @pytest.mark.usefixtures('impatient')
-def test_a_missing_server_is_looked_for(run, arguments, message):
+def test_a_missing_server_fails_with_its_likely_cause(run, arguments, message):
     run(Elsewhere, *arguments)
     with pytest.raises(CheckFailed, match=message):
         check_answers()
@@ -320,7 +320,7 @@ def test_a_topic_in_place_of_a_service_is_named(run):
 
 
 @pytest.mark.usefixtures('impatient')
-def test_two_servers_are_one_too_many(run):
+def test_a_second_server_fails_the_check(run):
     run(IKService, key='one')
     run(Elsewhere, '/solve_ik', node_name='another', key='two')
     with pytest.raises(CheckFailed, match=r'one server of /solve_ik, saw 2 \(/another, /ik_s'):
@@ -328,12 +328,12 @@ def test_two_servers_are_one_too_many(run):
 
 
 @pytest.mark.usefixtures('impatient')
-def test_without_a_node_the_cell_that_starts_it_is_named():
+def test_a_missing_node_fails_with_advice_to_run_its_cell():
     with pytest.raises(CheckFailed, match='the node is not running, so run the cell that starts'):
         check_answers()
 
 
-def test_the_checks_solve_nothing_for_an_answer(monkeypatch):
+def test_the_solver_of_the_checks_refuses_to_run_in_the_student_room(monkeypatch):
     monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
     assert ik.solve(ik.request(1.2, 0.8)).reachable
     monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'student')

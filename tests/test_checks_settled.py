@@ -69,15 +69,15 @@ def told(source):
 @pytest.mark.parametrize(
     ('source', 'lived_sec', 'names'), NOTHING_COMES.values(), ids=NOTHING_COMES
 )
-def test_where_nothing_can_come_the_nodes_that_are_there_are_told(source, lived_sec, names):
+def test_nodes_are_listed_if_no_endpoint_can_appear(source, lived_sec, names):
     assert told(source + ASK.format(lived_sec=lived_sec)) == names
 
 
 @pytest.mark.parametrize(('source', 'lived_sec'), SOMETHING_MAY.values(), ids=SOMETHING_MAY)
-def test_where_something_may_come_it_is_not_called_absent(source, lived_sec):
+def test_no_list_is_given_if_an_endpoint_may_appear(source, lived_sec):
     assert told(source + ASK.format(lived_sec=lived_sec)) is None
 
 
-def test_a_task_of_the_students_may_make_one():
+def test_no_list_is_given_while_an_asyncio_task_runs():
     ask = ASK.format(lived_sec=9).replace('\n', '\n    ')
     assert told(IN_A_TASK.format(ask=ask)) is None

@@ -39,7 +39,7 @@ def run(patient):
     ('node_class', 'clock'),
     [(WallStamp, 'simulated'), (SteadyWallStamp, 'wall'), (UnmovableWallStamp, 'wall')],
 )
-def test_the_computers_clock_fails_on_both(run, node_class, clock):
+def test_stamps_of_the_computers_clock_fail_on_either_clock(run, node_class, clock):
     run(node_class)
     recording = topic(TOPIC).record(seconds=10.0)
     assert recording.clock == clock
@@ -51,7 +51,7 @@ def test_the_computers_clock_fails_on_both(run, node_class, clock):
     'node_class',
     [SteadyClock, NoParameterServices],
 )
-def test_the_nodes_clock_passes_and_is_given_back(run, node_class):
+def test_stamps_of_the_nodes_clock_pass_and_use_sim_time_is_reset(run, node_class):
     node = run(node_class)
     recording = topic(TOPIC).record(seconds=10.0)
     assert recording.clock == 'wall'
@@ -62,7 +62,7 @@ def test_the_nodes_clock_passes_and_is_given_back(run, node_class):
 
 
 @pytest.mark.slow
-def test_a_clock_that_nobody_can_move_is_taken_for_the_nodes(patient):
+def test_stamps_pass_if_the_nodes_clock_cannot_be_changed(patient):
     with running('no_parameter_services'):
         topic(TOPIC).record(seconds=10.0).assert_stamps()
 
@@ -82,7 +82,9 @@ def test_a_clock_that_nobody_can_move_is_taken_for_the_nodes(patient):
         ([None, None, None], True),
     ],
 )
-def test_only_stamps_that_stay_behind_are_held_against_a_node(monkeypatch, looks, passes):
+def test_a_node_fails_only_if_each_stamp_stays_behind_the_advanced_clock(
+    monkeypatch, looks, passes
+):
     left = list(looks)
 
     def look(*args):
@@ -115,7 +117,7 @@ def recorded(samples, **options):
         ([0.2, 0.2, 0.2, 0.001], 'a stamp that does not advance'),
     ],
 )
-def test_a_stamp_that_comes_twice_at_once_is_told_from_one_that_stays(apart_sec, told):
+def test_a_stamp_used_twice_is_distinguished_from_a_stamp_that_stays(apart_sec, told):
     samples = []
     for number, between_sec in enumerate(apart_sec):
         message = JointState()
@@ -127,7 +129,7 @@ def test_a_stamp_that_comes_twice_at_once_is_told_from_one_that_stays(apart_sec,
 
 
 @pytest.mark.parametrize('is_another', [True, False])
-def test_messages_of_one_tick_share_a_stamp_but_none_comes_twice(is_another):
+def test_messages_of_one_tick_may_share_a_stamp_unless_they_are_equal(is_another):
     samples = []
     for number in range(1, 5):
         for position in (0.1, 0.2) if is_another else (0.1, 0.1):
@@ -142,7 +144,7 @@ def test_messages_of_one_tick_share_a_stamp_but_none_comes_twice(is_another):
             made.assert_stamps()
 
 
-def test_a_stamp_of_an_earlier_tick_does_not_advance():
+def test_a_stamp_that_stays_over_several_ticks_fails():
     samples = []
     for number in range(1, 5):
         message = JointState(position=[0.1 * number])
@@ -152,7 +154,7 @@ def test_a_stamp_of_an_earlier_tick_does_not_advance():
         recorded(samples, clock='simulated', start_sec=100.0).assert_stamps()
 
 
-def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late():
+def test_the_computers_clock_is_named_even_if_one_message_comes_late():
     samples = []
     for number in range(1, 21):
         at_sec = 100.0 + 0.01 * number  # of wall time; the robot's goes twenty times as fast
@@ -163,7 +165,7 @@ def test_the_computers_clock_is_told_where_a_busy_machine_sends_one_message_late
         recorded(samples, clock='simulated', start_sec=100.0).assert_stamps()
 
 
-def test_stamps_advance_that_are_less_apart_than_seconds_since_the_epoch_can_tell():
+def test_stamps_a_nanosecond_apart_count_as_advancing():
     samples = []
     for number in range(1, 5):
         message = JointState()
@@ -181,7 +183,7 @@ def test_stamps_advance_that_are_less_apart_than_seconds_since_the_epoch_can_tel
         ([0.0] * 19 + [2.0], False, CheckFailed),
     ],
 )
-def test_one_stamp_that_a_busy_machine_made_late_costs_nobody_points(off_sec, was_busy, raised):
+def test_one_late_stamp_on_a_busy_machine_counts_as_starved(off_sec, was_busy, raised):
     samples = []
     for number, off in enumerate(off_sec, start=1):
         at_sec = 1_000.0 + 0.2 * number + off
@@ -194,7 +196,7 @@ def test_one_stamp_that_a_busy_machine_made_late_costs_nobody_points(off_sec, wa
     assert failed.type is raised
 
 
-def test_a_clock_that_stands_still_while_a_callback_works_is_no_computers():
+def test_stamps_of_a_clock_that_stands_still_are_not_taken_for_wall_time():
     shown_ns = [100 * 10**9, 105 * 10**9]
     by_way_of_a_float = 105 * 10**9 + 300
     stood = [(105 * 10**9, sent * 10**8) for sent in (1040, 1048, 1050)]
@@ -202,7 +204,7 @@ def test_a_clock_that_stands_still_while_a_callback_works_is_no_computers():
     assert _ahead_sec([(104 * 10**9 + 5000, 104 * 10**9)], shown_ns) == [5e-6]
 
 
-def test_a_node_that_takes_no_other_clock_is_not_said_to_have_the_computers(patient):
+def test_a_node_that_refuses_use_sim_time_passes_with_its_own_stamps(patient):
     with running('refuses_parameters'):
         recording = topic(TOPIC).record(seconds=10.0)
         recording.assert_stamps()

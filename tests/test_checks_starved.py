@@ -37,7 +37,7 @@ def told(monkeypatch):
     ],
     ids=['nearly right', 'the clock was driven', 'pauses', 'pauses of its own', '1 Hz', '10 Hz'],
 )
-def test_what_is_exact_on_the_robots_clock_alone_is_no_zero_where_that_had_no_time(
+def test_a_nearly_right_rate_in_a_makeshift_recording_counts_as_starved(
     told, gaps_sec, is_makeshift, doubt
 ):
     recording = replace(on_wall(gaps_sec, late_sec=0.0), is_makeshift=is_makeshift)
@@ -61,7 +61,9 @@ STARVED_GAPS = [0.2, 0.33, 0.21, 0.41, 0.2, 0.28, 0.2, 0.37, 0.22, 0.2, 0.3, 0.2
     ],
     ids=['starved', 'idle', '4_hz', '1_hz', '10_hz', 'by_turns', 'a_pause'],
 )
-def test_a_machine_is_blamed_only_for_what_it_can_do(told, gaps_sec, late_sec, doubt):
+def test_a_late_recording_excuses_only_rates_that_a_busy_machine_can_cause(
+    told, gaps_sec, late_sec, doubt
+):
     assert told(on_wall(gaps_sec, late_sec=late_sec)) is doubt
 
 
@@ -85,7 +87,7 @@ def test_a_machine_is_blamed_only_for_what_it_can_do(told, gaps_sec, late_sec, d
         *('one pause', 'one pause, idle', 'one pause of another rate'),
     ],
 )
-def test_a_busy_machine_is_to_blame_also_where_the_recording_itself_was_in_time(
+def test_a_busy_machine_excuses_small_errors_of_a_recording_in_time(
     told, gaps_sec, was_busy, doubt
 ):
     recording = replace(on_wall(gaps_sec, late_sec=0.0), was_busy=was_busy)

@@ -38,7 +38,7 @@ class PlainTimer:
 
 @pytest.mark.parametrize('hz', [0.5, 5.0, 7.0, 7.5, 8.0, 9.0, 12.5, 15.0, 16.0, 17.0, 40.0, 80.0])
 @pytest.mark.parametrize('step_sec', [0.1, 0.05])
-def test_no_timer_is_said_to_leave_messages_out(hz, step_sec):
+def test_the_chosen_steps_show_each_plain_timer_as_even_and_complete(hz, step_sec):
     """With 8 Hz in steps of 0.1 s, one gap of four is two ticks long, and the others are one."""
     for phase in range(20):
         timer = PlainTimer(hz, phase / 20)

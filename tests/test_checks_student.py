@@ -97,7 +97,7 @@ FAILURES = {
 
 
 @pytest.mark.parametrize(('function', 'message'), FAILURES.values(), ids=FAILURES)
-def test_call_fails_in_the_words_of_the_lesson(notebook, capfd, function, message):
+def test_call_fails_with_advice_for_the_mistake(notebook, capfd, function, message):
     if function is not None:
         notebook(f=function)
     with pytest.raises(CheckFailed) as failed:
@@ -107,7 +107,7 @@ def test_call_fails_in_the_words_of_the_lesson(notebook, capfd, function, messag
     assert capfd.readouterr().err == ''
 
 
-def test_messages_travel_both_ways(notebook):
+def test_messages_are_passed_to_and_returned_from_a_function(notebook):
     def to_joint_state(theta1_deg, theta2_deg, stamp):
         message = JointState(name=['joint1', 'joint2'], position=[theta1_deg, theta2_deg])
         message.header.stamp = stamp
@@ -139,7 +139,7 @@ def test_value_reads_a_name(notebook):
         (list, 'print(type(…)) of the value shows what it is'),
     ],
 )
-def test_advice_follows_the_type_that_is_wanted(notebook, wanted, advice):
+def test_advice_depends_on_the_expected_type(notebook, wanted, advice):
     notebook(f=lambda: 5)
     with pytest.raises(CheckFailed) as failed:
         student.call('f', returns=wanted)
@@ -158,7 +158,7 @@ def test_advice_follows_the_type_that_is_wanted(notebook, wanted, advice):
         ),
     ],
 )
-def test_a_result_that_cannot_travel_is_told_from_a_message(notebook, result, seen):
+def test_a_result_that_is_no_message_is_described(notebook, result, seen):
     notebook(f=lambda: result)
     with pytest.raises(CheckFailed) as failed:
         student.call('f', returns=JointState)
@@ -179,7 +179,7 @@ def test_any_bad_reply_is_a_failed_check(monkeypatch, reply):
 @pytest.mark.parametrize(
     'body', [5, True, None, ['a', 'b'], ('a', 5), ('a',), ('a', 'b', 5), ('a',) * 4, {}]
 )
-def test_what_a_notebook_tells_of_its_nodes_is_believed_in_its_form_alone(monkeypatch, body):
+def test_malformed_replies_about_nodes_are_ignored(monkeypatch, body):
     monkeypatch.setattr(node_troubles, 'reply_value', lambda request: body)
     assert (node_troubles.last_raised('/a'), node_troubles.unfinished('/a')) == ('', '')
     assert node_troubles.unpublished_field('/a') == ('', '')
@@ -187,7 +187,7 @@ def test_what_a_notebook_tells_of_its_nodes_is_believed_in_its_form_alone(monkey
     assert node_troubles.times_raised('/a') == (5 if body == 5 else 0)
 
 
-def test_the_question_is_the_agreed_text(monkeypatch):
+def test_requests_to_the_notebook_have_the_agreed_form(monkeypatch):
     asked = []
     monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
     monkeypatch.setattr('builtins.input', lambda text: asked.append(text) or '{"ok":1}')
@@ -211,7 +211,7 @@ def test_a_warning_of_the_function_stays_off_stderr(notebook, capsys):
 
 
 @pytest.mark.starts
-def test_answering_loads_no_check():
+def test_the_responder_imports_no_checks():
     code = (
         'import sys; import my_robot_basics.exchange.responder; '
         "print(*sorted(m for m in sys.modules if m.startswith('my_robot_basics')))"
@@ -237,7 +237,7 @@ class Still(Node):
 
 
 @pytest.mark.starts
-def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
+def test_an_exception_in_a_callback_is_reported_until_its_node_is_restarted(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     assert node_troubles.last_raised('/raises') == ''
     live.run(Raises)
@@ -253,7 +253,7 @@ def test_what_a_callback_raised_is_told_until_its_node_begins_anew(monkeypatch):
 
 @pytest.mark.starts
 @pytest.mark.parametrize('end', [live.stop, live.reset])
-def test_how_often_a_callback_raised_is_told_until_its_node_ends(monkeypatch, end):
+def test_the_count_of_exceptions_is_reset_when_a_node_ends(monkeypatch, end):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     live.run(Raises)
     live.wait_until(lambda: node_troubles.times_raised('/raises') > 2)
@@ -272,7 +272,7 @@ class Waits(Node):
 
 
 @pytest.mark.starts
-def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
+def test_a_callback_that_does_not_return_is_reported_with_its_line(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     node = live.run(Waits)
     live.wait_until(lambda: node_troubles.unfinished('/waits'))
@@ -288,7 +288,7 @@ def test_a_callback_that_does_not_return_is_told_with_its_line(monkeypatch):
 
 @pytest.mark.starts
 @pytest.mark.parametrize('end', [lambda: live.run(Node, 'next'), live.reset], ids=['next', 'all'])
-def test_what_ended_a_thread_is_told_until_a_node_begins(monkeypatch, end):
+def test_an_exception_that_ended_a_thread_is_reported_until_a_new_start(monkeypatch, end):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     monkeypatch.setattr(threading, 'excepthook', lambda args: None)
     monkeypatch.setattr(sys, 'unraisablehook', sys.unraisablehook)
@@ -308,14 +308,14 @@ def _raise(error):
 
 
 @pytest.mark.starts
-def test_a_callback_that_returns_again_and_again_keeps_nobody_waiting(monkeypatch):
+def test_a_callback_that_keeps_returning_is_not_called_unfinished(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     live.run(Node, 'ticks').create_timer(0.01, lambda: None)
     assert node_troubles.unfinished('/ticks') == ''
     live.stop()
 
 
-def test_a_stamp_that_is_no_message_is_told_what_makes_one(monkeypatch):
+def test_a_clock_time_as_a_stamp_gets_advice_to_call_to_msg(monkeypatch):
     said = "AttributeError: 'Time' object has no attribute 'sec' (line 3)"
     monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
     field = 'header.stamp', 'Time'
@@ -337,9 +337,7 @@ MISSING = 'missing 1 required positional argument:'
         ),
     ],
 )
-def test_a_callback_that_rclpy_calls_with_too_little_is_told_one_thing_to_do(
-    monkeypatch, said, advice
-):
+def test_an_exception_in_a_callback_gets_one_piece_of_advice(monkeypatch, said, advice):
     monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
     field = 'header.stamp', 'builtin_interfaces/Time'
     monkeypatch.setattr(node_troubles, 'unpublished_field', lambda name: field)
@@ -355,9 +353,7 @@ def test_a_callback_that_rclpy_calls_with_too_little_is_told_one_thing_to_do(
         ('rclpy._rclpy_pybind11.Node', 'so give your method'),
     ],
 )
-def test_what_is_no_function_is_told_of_and_a_name_of_node_s_is_told_alone(
-    monkeypatch, called, advice
-):
+def test_a_callback_that_is_not_callable_gets_one_piece_of_advice(monkeypatch, called, advice):
     said = f"TypeError: '{called}' object is not callable"
     monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
     monkeypatch.setattr(node_troubles, 'unpublished_field', lambda name: ('', ''))
@@ -366,14 +362,14 @@ def test_what_is_no_function_is_told_of_and_a_name_of_node_s_is_told_alone(
     assert why.count(', so ') == 1
 
 
-def test_a_field_of_another_type_is_told_from_what_rclpy_says_of_it(monkeypatch):
+def test_the_error_of_rclpy_about_a_wrong_field_is_explained(monkeypatch):
     said = 'TypeError: bad argument type for built-in operation (line 3)'
     monkeypatch.setattr(node_troubles, 'last_raised', lambda name: said)
     assert what_raised(['/any']).endswith('a field of the message holds a value of another type')
 
 
 @pytest.mark.starts
-def test_the_field_of_another_type_is_named_where_rclpy_was_to_publish_it(monkeypatch):
+def test_a_field_of_a_wrong_type_in_a_published_message_is_named(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
 
     class Floats(Node):
@@ -398,7 +394,7 @@ def test_the_field_of_another_type_is_named_where_rclpy_was_to_publish_it(monkey
 
 
 @pytest.mark.starts
-def test_what_is_logged_and_no_text_is_told_with_its_line(monkeypatch):
+def test_logging_a_value_that_is_no_text_is_reported_with_its_line(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
 
     class Logs(Node):
@@ -418,7 +414,7 @@ def test_what_is_logged_and_no_text_is_told_with_its_line(monkeypatch):
 
 
 @pytest.mark.starts
-def test_what_a_library_raised_is_told_with_the_students_line(monkeypatch):
+def test_an_exception_in_a_library_is_reported_with_the_students_line(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
 
     class Texts(Node):

@@ -40,13 +40,13 @@ def client():
 
 
 @pytest.mark.parametrize(('cell', 'passes'), CELLS.values(), ids=CELLS)
-def test_a_check_that_passes_says_so(client, cell, passes):
+def test_only_a_passing_check_prints_that_it_passed(client, cell, passes):
     printed(client, 'import my_robot_basics.checks')
     assert (printed(client, cell) == PASSED + '\n') == passes
     assert (PASSED in printed(client, cell)) == passes
 
 
-def test_the_very_first_check_says_so_and_says_it_once():
+def test_the_first_check_of_a_kernel_prints_once_that_it_passed():
     manager, client = kernel_in()
     try:
         assert [printed(client, RIGHT) for _ in range(2)] == [PASSED + '\n'] * 2
@@ -55,7 +55,7 @@ def test_the_very_first_check_says_so_and_says_it_once():
         manager.shutdown_kernel(now=True)
 
 
-def test_in_the_rooms_of_the_grader_nothing_is_printed():
+def test_a_passing_check_prints_nothing_in_the_test_room():
     manager, client = kernel_in(MY_ROBOT_BASICS_ROOM='test')
     try:
         assert printed(client, RIGHT) == ''
@@ -65,7 +65,7 @@ def test_in_the_rooms_of_the_grader_nothing_is_printed():
 
 
 @pytest.mark.parametrize('path', sorted(Path(__file__).parents[1].glob('solutions/*/*.ipynb')))
-def test_the_checks_of_the_lessons_are_known_as_such(path):
+def test_grade_cells_of_the_lessons_are_recognized_as_checks(path):
     notebook = nbformat.read(path, as_version=4)
     graded = [
         cell

@@ -69,7 +69,7 @@ def test_a_node_with_its_own_thread_and_context_is_judged_exactly():
 
 
 @pytest.mark.slow
-def test_another_node_of_the_student_is_no_hindrance(run):
+def test_a_second_node_that_never_spins_does_not_disturb_a_recording(run):
     run(imported('five_hz').FiveHz)
     silent = Node('bystander_that_never_spins', context=live.run(Node, 'spins').context)
     recording = topic(TOPIC).record(seconds=10.0)
@@ -78,7 +78,7 @@ def test_another_node_of_the_student_is_no_hindrance(run):
 
 
 @pytest.mark.slow
-def test_a_clock_of_the_student_is_left_alone(run):
+def test_a_clock_publisher_of_the_student_leads_to_a_wall_recording(run):
     run(imported('five_hz').FiveHz)
     run(Node, 'my_simulator').create_publisher(Clock, '/clock', 10)
     recording = topic(TOPIC).record()
@@ -131,7 +131,7 @@ def test_silence_is_explained(monkeypatch, capfd, node, reason):
 
 
 @pytest.mark.slow
-def test_silence_of_a_node_whose_callback_raised_is_not_waited_on(run):
+def test_a_check_does_not_wait_for_a_node_whose_callback_raised(run):
     class Raises(Node):
         def __init__(self):
             super().__init__('raises')
@@ -144,7 +144,7 @@ def test_silence_of_a_node_whose_callback_raised_is_not_waited_on(run):
 
 
 @pytest.mark.slow
-def test_bytes_that_are_no_message_are_silence():
+def test_malformed_messages_count_as_silence():
     # in a process of its own: rcl keeps the C library's complaint, and prints it later
     code = f"from my_robot_basics.checks import topic; topic('{TOPIC}').record()"
     here = {**os.environ, 'MY_ROBOT_BASICS_DOMAIN_ID': os.environ['ROS_DOMAIN_ID']}
@@ -155,7 +155,7 @@ def test_bytes_that_are_no_message_are_silence():
     assert 'CheckFailed: expected messages on /kinematics/joint_states, saw no mess' in done.stderr
 
 
-def test_no_node_at_all_is_said(monkeypatch):
+def test_a_missing_node_is_reported(monkeypatch):
     monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 0.5)
     with pytest.raises(CheckFailed, match=r'saw none: the node is not running'):
         topic(TOPIC).record()
@@ -181,7 +181,7 @@ def test_two_types_on_a_topic_are_named(run):
 
 
 @pytest.mark.slow
-def test_the_watcher_can_not_be_reached(run):
+def test_a_watcher_has_no_services_that_nodes_can_see(run):
     run(imported('five_hz').FiveHz)
     seen = set()
 
@@ -201,7 +201,7 @@ def test_the_watcher_can_not_be_reached(run):
 
 
 @pytest.mark.slow
-def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkeypatch):
+def test_the_wait_is_short_if_the_notebook_reports_no_endpoint(run, monkeypatch):
     monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 0.6)
     run(Node, 'idle').create_publisher(JointState, '/elsewhere', 10)
     assert student.has_endpoint('/elsewhere')
@@ -211,7 +211,7 @@ def test_nobody_waits_long_for_what_the_notebook_says_it_has_not_got(run, monkey
 
 
 @pytest.mark.slow
-def test_what_cannot_come_any_more_is_not_waited_for(run, monkeypatch):
+def test_there_is_no_wait_if_no_endpoint_can_appear(run, monkeypatch):
     monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 20.0)
     monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 20.0)
     for may_come in '_threads', '_processes', '_tasks', '_alarm':  # those of pytest
@@ -224,6 +224,6 @@ def test_what_cannot_come_any_more_is_not_waited_for(run, monkeypatch):
 
 
 @pytest.mark.parametrize('reply', ['', '{"failed":"no usable answer"}', '{"ok":1}', None])
-def test_a_notebook_that_does_not_say_is_waited_for(monkeypatch, reply):
+def test_an_unusable_reply_counts_as_an_existing_endpoint(monkeypatch, reply):
     monkeypatch.setattr(student, 'send', lambda question: reply)
     assert student.has_endpoint(TOPIC)

@@ -36,7 +36,7 @@ class Echo(Node):
 @pytest.mark.parametrize(
     'durability', [DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL]
 )
-def test_a_question_gets_its_answer(run, reliability, durability):
+def test_wait_for_returns_the_answer_to_a_published_message(run, reliability, durability):
     run(Echo, QoSProfile(depth=10, reliability=reliability, durability=durability))
     message = topic('/answer').wait_for(
         lambda message: message.position[0] == 1.5,
@@ -46,14 +46,14 @@ def test_a_question_gets_its_answer(run, reliability, durability):
 
 
 @pytest.mark.slow
-def test_a_question_that_nobody_hears_fails(run):
+def test_publishing_without_a_subscription_fails(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match='/echo uses /question, so compare the spelling'):
         topic('/questions').publish(Point(), timeout_sec=0.5)
 
 
 @pytest.mark.slow
-def test_the_wrong_answer_is_no_answer(run):
+def test_a_wrong_answer_does_not_count(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match='expected a message on /answer that answers, saw 1 oth'):
         topic('/answer').wait_for(
@@ -64,7 +64,7 @@ def test_the_wrong_answer_is_no_answer(run):
 
 
 @pytest.mark.slow
-def test_a_question_to_a_subscription_for_another_type_says_so(run):
+def test_publishing_to_a_subscription_of_another_type_names_the_type(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed) as failed:
         topic('/question').publish(JointState(), timeout_sec=0.5)
@@ -72,7 +72,7 @@ def test_a_question_to_a_subscription_for_another_type_says_so(run):
     assert 'one is there for geometry_msgs/msg/Point' in str(failed.value)
 
 
-def test_an_answer_of_another_type_says_so(run):
+def test_an_answer_of_another_type_is_named(run):
     """Its fields would be looked for in vain."""
     run(Echo, 10)
     words = 'expected PointStamped messages on /answer, saw JointState: compare the message type'
@@ -81,7 +81,7 @@ def test_an_answer_of_another_type_says_so(run):
 
 
 @pytest.mark.slow
-def test_a_best_effort_subscription_gets_the_question(run):
+def test_a_best_effort_subscription_receives_the_published_message(run):
     run(Echo, QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
     for number in range(5):
         topic('/answer').wait_for(
@@ -90,7 +90,7 @@ def test_a_best_effort_subscription_gets_the_question(run):
         )
 
 
-def test_the_wrong_answer_is_named_in_the_words_of_the_check(run):
+def test_a_wrong_answer_is_reported_in_the_words_of_the_check(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed) as failed:
         topic('/answer').wait_for(
@@ -106,7 +106,7 @@ def test_the_wrong_answer_is_named_in_the_words_of_the_check(run):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('right', [0.5, 1.5])
-def test_a_wrong_answer_beside_the_right_one_is_one_too_many(run, right):
+def test_a_forbidden_answer_beside_the_right_one_fails(run, right):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match=f'expected only that, saw {2.0 - right}: leave it out'):
         topic('/answer').wait_for(
@@ -121,7 +121,7 @@ def test_a_wrong_answer_beside_the_right_one_is_one_too_many(run, right):
 
 @pytest.mark.slow
 @pytest.mark.timeout(60)
-def test_a_wrong_answer_alone_is_not_waited_on(run):
+def test_a_forbidden_answer_alone_fails_without_a_wait(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match=r'expected 9\.0, saw 0\.5: count again'):
         topic('/answer').wait_for(
@@ -154,13 +154,13 @@ def is_half(message):
 
 
 @pytest.mark.slow
-def test_an_answer_that_is_wanted_once_comes_once(run):
+def test_a_single_answer_passes_if_one_is_expected(run):
     run(Echo, 10)
     ask_once(is_it=is_half)
 
 
 @pytest.mark.slow
-def test_two_answers_are_one_too_many(run):
+def test_two_answers_fail_if_one_is_expected(run):
     run(Echo, 10)
     with pytest.raises(CheckFailed, match='saw 2 messages'):
         ask_once(is_it=is_half, questions=2)
@@ -175,14 +175,14 @@ class AnswersInParts(Echo):
 
 
 @pytest.mark.slow
-def test_half_an_answer_beside_the_whole_one_is_one_too_many(run):
+def test_a_partial_answer_beside_the_whole_one_fails(run):
     run(AnswersInParts, 10)
     with pytest.raises(CheckFailed, match='saw 2 messages: publish once in each call'):
         ask_once(is_it=lambda message: len(message.position) == 2)
 
 
 @pytest.mark.slow
-def test_an_answer_that_is_repeated_by_a_timer_is_told(run):
+def test_an_answer_repeated_by_a_timer_fails(run):
     run(Repeats, 10)
     with pytest.raises(CheckFailed, match='expected one message for each that your node receives'):
         ask_once(is_it=is_half)
@@ -201,7 +201,7 @@ class TalksBefore(Echo):
 
 
 @pytest.mark.slow
-def test_what_comes_before_anything_was_asked_is_told(run):
+def test_messages_before_the_first_question_fail(run):
     run(TalksBefore, 10)
     with pytest.raises(CheckFailed, match='saw messages before it has received any: publish once'):
         ask_once(is_it=is_half)
@@ -235,9 +235,7 @@ class AnswersTheOneBefore(Echo):
         (AnswersTheOneBefore, 'the first one only when a second was sent: publish what you make'),
     ],
 )
-def test_who_leaves_out_each_other_is_told_from_who_answers_the_one_before(
-    run, monkeypatch, node_class, reason
-):
+def test_skipped_answers_are_distinguished_from_delayed_ones(run, monkeypatch, node_class, reason):
     def ask_twice():
         for _ in range(2):
             ask_once(timeout_sec=1.0)

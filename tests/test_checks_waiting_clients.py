@@ -36,7 +36,7 @@ class CallsAWhile(IKClient):
 
 
 @pytest.mark.slow
-def test_who_waits_and_asks_late_for_what_came_before_is_told_of_the_wait(run):
+def test_a_request_delayed_by_waiting_in_a_callback_fails_with_the_cause(run):
     run(CallsAWhile)
     with Watcher() as here:
         publisher = topic('/target_point').meet(here, Point)
@@ -77,7 +77,7 @@ WAITING = [Calls, SpinsInside, Sleeps, AwaitsInItsOnlyGroup]
 
 @pytest.mark.parametrize('node_class', WAITING)
 @pytest.mark.usefixtures('impatient')
-def test_who_waits_inside_a_callback_is_told(run, node_class):
+def test_waiting_inside_a_callback_fails_with_the_cause(run, node_class):
     run(node_class)
     with pytest.raises(CheckFailed) as failure:
         check_never_blocks()
@@ -89,7 +89,7 @@ def test_who_waits_inside_a_callback_is_told(run, node_class):
 
 @pytest.mark.parametrize('node_class', [Calls, SpinsInside])
 @pytest.mark.usefixtures('impatient')
-def test_who_never_gets_an_answer_is_told_why(run, node_class):
+def test_a_client_that_never_gets_an_answer_fails_with_the_cause(run, node_class):
     run(node_class)
     with pytest.raises(CheckFailed, match=r'expected the elbow-up pose .*saw none') as failure:
         check_asks()
@@ -98,7 +98,7 @@ def test_who_never_gets_an_answer_is_told_why(run, node_class):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
-def test_who_gives_up_waiting_is_told_not_to_wait(run):
+def test_a_client_that_gives_up_waiting_fails_for_its_wait(run):
     run(CallsAWhile)
     for check in check_asks, check_never_blocks:
         with pytest.raises(CheckFailed, match='inside a callback'):
@@ -113,7 +113,7 @@ class WaitsForTheServer(IKClient):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
-def test_who_waits_for_a_server_that_is_not_there_is_told(run):
+def test_waiting_for_an_absent_server_fails_with_the_cause(run):
     run(WaitsForTheServer)
     check_asks()
     with pytest.raises(CheckFailed, match='while there is no server, saw it stand still: it wai'):
@@ -130,7 +130,7 @@ class CountsAhead(WaitsForTheServer):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
-def test_who_counts_ahead_has_to_go_on_all_the_same(run):
+def test_counting_ahead_does_not_hide_a_wait_for_the_server(run):
     run(CountsAhead)
     with pytest.raises(CheckFailed, match='while there is no server, saw it stand still'):
         check_never_blocks()
@@ -173,7 +173,7 @@ class RemembersOneFuture(IKClient):
     ],
 )
 @pytest.mark.usefixtures('impatient')
-def test_who_loses_a_target_while_the_server_takes_its_time_is_told(run, node_class, message):
+def test_losing_a_target_while_the_server_is_slow_fails_with_advice(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_never_blocks()

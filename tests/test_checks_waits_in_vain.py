@@ -40,11 +40,11 @@ def evenly(speed, seconds=4):
     ],
     ids=['far', 'too far', 'near', 'gets faster', 'stands', 'goes away', 'too little'],
 )
-def test_a_wait_is_in_vain_where_the_arm_needs_longer_than_a_busy_machine_gets(parts, in_vain):
+def test_a_wait_is_in_vain_if_the_arm_needs_longer_than_the_longest_wait(parts, in_vain):
     assert is_in_vain(sent_with(parts), free_sec=3.0) == in_vain
 
 
-def test_a_goal_that_is_over_or_of_one_joint_and_feedback_of_before_tell_nothing():
+def test_finished_goals_and_unusable_feedback_show_no_wait_in_vain():
     assert not is_in_vain(sent_with(evenly(0.01), is_over=True), free_sec=3.0)
     assert not is_in_vain(sent_with(evenly(0.01), lengths=1), free_sec=3.0)
     assert not is_in_vain(sent_with(evenly(0.01)), free_sec=3.0, since_ns=37 * 10**8)
@@ -77,13 +77,13 @@ class Time:
         (0.14, True, [1.0, 2.0]),
     ],
 )
-def test_an_arm_that_crawls_is_waited_for_as_long_as_it_should_take(speed, is_driven, waits):
+def test_the_wait_for_an_arm_ends_early_if_it_crawls(speed, is_driven, waits):
     arm = SimpleNamespace(time=Time(is_driven), start=(0.0, 0.0))
     assert not wait_unless_it_crawls(arm, sent_with(evenly(speed)), GOAL, seconds=3.0)
     assert arm.time.waits == waits
 
 
-def test_a_long_move_is_looked_at_sooner():
+def test_a_crawling_arm_is_detected_after_look_after_sec():
     arm = SimpleNamespace(time=Time(is_driven=True), start=(0.0, 0.0))
     slow = sent_with(evenly(0.01))
     assert not wait_unless_it_crawls(arm, slow, GOAL, seconds=3.0, look_after_sec=0.25)

@@ -26,7 +26,7 @@ TOPIC = '/kinematics/joint_states'
 @pytest.mark.starts
 @pytest.mark.slow
 @pytest.mark.usefixtures('patient')
-def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
+def test_the_first_recording_decides_if_the_node_has_ended(monkeypatch):
     with running('too_slow'):
         recording = topic(TOPIC).record(seconds=10.0)
     monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 1.0)
@@ -40,7 +40,7 @@ def test_the_first_look_stands_when_the_node_has_gone(monkeypatch):
     ('late_sec', 'validate_sec', 'looks_in_all'),
     [(0.0, 1000.0, 2), (1.0, 1000.0, 4), (1.0, 0.0, 1)],
 )
-def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
+def test_a_late_machine_records_again_while_there_is_time(
     monkeypatch, late_sec, validate_sec, looks_in_all
 ):
     recorded = []
@@ -61,7 +61,7 @@ def test_a_machine_that_is_late_itself_looks_again_while_there_is_time(
 
 
 @pytest.mark.starts
-def test_what_nobody_had_time_to_take_has_come_all_the_same(monkeypatch):
+def test_messages_not_yet_taken_by_the_check_are_in_the_recording(monkeypatch):
     """The check has no time on a busy machine, or if a publisher with a period of 0 floods it."""
     with running('fifty_hz'), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
@@ -74,7 +74,7 @@ def test_what_nobody_had_time_to_take_has_come_all_the_same(monkeypatch):
     assert len(recording.messages) == len(sent) > 20
 
 
-def test_who_seemed_to_ignore_the_robots_clock_is_waited_for_like_who_remembers_it(monkeypatch):
+def test_a_recording_waits_longer_for_a_node_that_seemed_to_ignore_the_clock(monkeypatch):
     """A thread that was late catches up while the clock stands still; its next time is ahead."""
     waited, why = [], Inconclusive(wall_recording.IGNORES)
     watcher = SimpleNamespace(late_sec=0.0)
@@ -89,7 +89,7 @@ def test_who_seemed_to_ignore_the_robots_clock_is_waited_for_like_who_remembers_
 
 
 @pytest.mark.parametrize(('ahead_sec', 'count'), [(30.0, 20), (0.0, 0)])
-def test_a_message_of_the_change_of_its_clock_is_not_where_a_recording_begins(
+def test_a_recording_does_not_begin_with_a_message_of_the_clock_change(
     monkeypatch, ahead_sec, count
 ):
     """`sleep_until` returns at once then, and a thread sleeps on until a time that is ahead."""
@@ -130,7 +130,7 @@ def test_a_message_of_the_change_of_its_clock_is_not_where_a_recording_begins(
     ],
     ids=['uneven', 'silent', 'ignores the clock'],
 )
-def test_only_who_published_on_the_robots_clock_may_remember_its_time(
+def test_only_a_node_that_published_on_the_simulated_clock_may_remember_it(
     monkeypatch, why, is_waited_for
 ):
     monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: 30.0)
@@ -144,7 +144,7 @@ def looked_at(node, *, timeout_sec):
 
 
 @pytest.mark.starts
-def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
+def test_a_wall_recording_waits_for_the_next_message_of_a_slow_node():
     recording = looked_at('one_hz', timeout_sec=10.0)
     (sample,) = recording.messages
     assert sample.time_sec == recording.seconds > 0.1
@@ -153,7 +153,7 @@ def test_the_wall_clock_waits_for_the_next_message_of_a_slow_node():
 @pytest.mark.starts
 @pytest.mark.slow
 @pytest.mark.parametrize(('timeout_sec', 'seconds'), [(0.4, 0.4), (0.0, 0.1)])
-def test_the_wall_clock_tells_how_long_there_was_nothing(timeout_sec, seconds):
+def test_a_wall_recording_without_messages_has_the_length_of_the_wait(timeout_sec, seconds):
     recording = looked_at('never_spins', timeout_sec=timeout_sec)
     assert (recording.messages, recording.seconds) == ((), seconds)
 
@@ -162,14 +162,14 @@ SLOWER = [0.23, 0.231] * 7
 
 
 @pytest.mark.parametrize(('gaps_sec', 'goes_on'), [([0.2] * 15, True), (SLOWER, False)])
-def test_who_goes_on_at_another_rate_is_looked_at_anew(monkeypatch, gaps_sec, goes_on):
+def test_a_recording_is_continued_only_if_the_rate_stays_the_same(monkeypatch, gaps_sec, goes_on):
     again, earlier = on_wall(gaps_sec, late_sec=0.0), on_wall([0.2] * 20, late_sec=0.0)
     monkeypatch.setattr(wall_recording, 'wall', lambda *_, **__: again)
     assert wall_recording.goes_on(None, None, earlier) is goes_on
 
 
 @pytest.mark.parametrize('end', ['\n', '\r', '\x0b', '\x85', '\u2028'])
-def test_a_name_that_dds_brings_writes_no_note_of_its_own(end):
+def test_a_node_name_with_line_ends_makes_a_note_of_one_line(end):
     """A note is a line of a check's: a student would write what a check has said."""
     recorder = SimpleNamespace(publishers=lambda: (f'/robot{end}note: 5 of 5 points',))
     assert len(wall_recording._note(recorder).splitlines()) == 1

@@ -37,7 +37,7 @@ def test_a_crowd_of_services_fails_a_check(node, monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_nodes_of_a_lesson_are_no_crowd():
+def test_the_nodes_of_a_lesson_stay_far_below_the_limit_of_endpoints():
     nodes = [live.run(Node, f'node_{number}', key=number) for number in range(5)]
     with Watcher() as here:
         here.spin_for(1.0)
@@ -49,7 +49,7 @@ def test_the_nodes_of_a_lesson_are_no_crowd():
     live.stop()
 
 
-def test_a_look_at_a_graph_that_never_rests_ends(monkeypatch):
+def test_a_look_at_an_ever_changing_graph_ends(monkeypatch):
     looks = iter(range(1_000_000))
     monkeypatch.setattr(graphs, 'MOST_TAKE_SEC', 0.0)
     monkeypatch.setattr(graphs, '_look', lambda node: next(looks))
@@ -85,12 +85,12 @@ def test_a_name_that_ros_refuses_fails_a_check(node, dds_name):
     made.close()
 
 
-def test_a_mistake_of_a_check_is_no_name_on_the_graph(node):
+def test_an_error_in_a_check_is_not_reported_as_a_bad_name_on_the_graph(node):
     with pytest.raises(ValueError, match='wrong'), Watcher():
         raise ValueError('wrong')
 
 
-def test_a_look_asks_for_no_event_that_nobody_waits_for():
+def test_a_watcher_waits_for_no_events():
     with Watcher() as here:
         assert not [
             event for event in here.node.waitables if event.callback_group.can_execute(event)
@@ -103,7 +103,7 @@ def end_cell(monkeypatch):
         yield end
 
 
-def test_the_watchers_of_a_grade_cell_share_a_participant_that_ends_with_it(node, end_cell):
+def test_watchers_of_a_grade_cell_share_a_participant_until_the_cell_ends(node, end_cell):
     with Watcher(shared=True) as first, Watcher(shared=True) as second, Watcher() as other:
         assert first.context is second.context
         assert other.context is not first.context
@@ -121,7 +121,7 @@ def test_the_watchers_of_a_grade_cell_share_a_participant_that_ends_with_it(node
         assert fourth.context is not first.context
 
 
-def test_elsewhere_each_watcher_is_gone_with_its_check(node):
+def test_a_watcher_outside_a_grade_cell_ends_with_its_check(node):
     with Watcher(shared=True) as alone:
         assert alone.context.ok()
     assert not alone.context.ok()

@@ -107,7 +107,7 @@ PROGRAM = """
 
 
 @pytest.mark.parametrize('executable', EXECUTABLES)
-def test_each_node_is_a_whole_ros_program_in_plain_sight(executable):
+def test_each_node_has_the_plain_main_function_of_a_ros_program(executable):
     """Students copy these files: no helper of the course stands between them and rclpy."""
     module = importlib.import_module(f'my_robot_basics.{executable}')
     node_class = next(
@@ -136,7 +136,7 @@ hello_node.main()
 """
 
 
-def test_an_error_of_the_nodes_own_is_not_hidden(start):
+def test_an_exception_in_a_node_is_printed_and_fails_the_process(start):
     process = start(sys.executable, '-c', MAIN.format(callback='raise LookupError("no arm")'))
     assert 'LookupError: no arm' in output(process)
     assert process.returncode == 1

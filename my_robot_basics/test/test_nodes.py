@@ -152,7 +152,7 @@ def test_publisher_logs_the_pose_that_it_publishes(stage):
 
 
 @pytest.mark.parametrize('node_class', [KinematicsPublisher, KinematicsSubscriber])
-def test_the_first_line_names_the_topic_as_rules_have_changed_it(own_domain, node_class, capfd):
+def test_the_first_log_line_names_the_remapped_topic(own_domain, node_class, capfd):
     rclpy.try_shutdown()  # another module's nodes may have left it initialised
     rclpy.init(args=['--ros-args', '-r', f'{TOPIC}:=/left/joint_states'])
     node_class().destroy_node()
@@ -173,7 +173,7 @@ def test_the_same_seed_gives_the_same_poses(stage):
     assert stage.peer.received[0].position.tolist() in poses
 
 
-def test_the_seed_is_a_parameter_that_nobody_changes_later(stage):
+def test_the_seed_is_a_read_only_parameter(stage):
     node, other = stage.run(KinematicsPublisher), KinematicsPublisher()
     drawn = node.get_parameter('seed').value
     assert drawn != other.get_parameter('seed').value
@@ -227,7 +227,7 @@ def test_subscriber_warns_about_a_malformed_message_and_goes_on(stage, message, 
     assert 'as elbow_up' in log.msg
 
 
-def test_subscriber_takes_names_in_another_order_by_name_and_says_so(stage):
+def test_subscriber_matches_reordered_joints_by_name_and_warns(stage):
     start_subscriber(stage)
     warning, answer = replies(stage, joint_state(-67.8, 23.4, names=['joint2', 'joint1']))
     assert warning.level == LoggingSeverity.WARN
@@ -235,7 +235,7 @@ def test_subscriber_takes_names_in_another_order_by_name_and_says_so(stage):
     assert 'θ1=23.4°, θ2=-67.8°' in answer.msg
 
 
-def test_subscriber_leaves_other_joints_alone(stage):
+def test_subscriber_ignores_other_joints(stage):
     start_subscriber(stage)
     gripper = joint_state(math.nan, 23.4, -67.8, names=['gripper', 'joint1', 'joint2'])
     (log,) = replies(stage, gripper)

@@ -89,7 +89,7 @@ symlink_install = pytest.param(
 
 
 @pytest.mark.parametrize('options', [[], symlink_install])
-def test_colcon_builds_what_the_ament_index_finds(workspace, options):
+def test_the_ament_index_finds_each_node_of_a_colcon_build(workspace, options):
     workspace.build(*options)
     assert workspace.executables() == NODES
     assert '[hello_node]: Hello' in workspace.first_line('hello_node')
@@ -123,7 +123,7 @@ def test_a_students_own_node_is_found_after_the_next_build(workspace):
 
 
 @pytest.mark.slow
-def test_a_build_carries_the_files_that_are_not_python(workspace):
+def test_a_colcon_build_installs_the_xml_files(workspace):
     workspace.build()
     (installed,) = workspace.folder.glob('install/my_robot_basics/lib/python*/site-packages')
     source = PACKAGE / 'my_robot_basics'
@@ -132,7 +132,7 @@ def test_a_build_carries_the_files_that_are_not_python(workspace):
     assert {path.relative_to(installed) for path in installed.rglob('*.xml')} == expected
 
 
-def test_installed_editable_the_package_is_found_from_the_folder_above():
+def test_an_editable_install_is_imported_in_the_folder_above_the_package():
     printed = subprocess.run(
         [sys.executable, '-c', 'import my_robot_basics; print(my_robot_basics.__file__)'],
         cwd=PACKAGE.parent,

@@ -50,7 +50,7 @@ def test_fk_agrees_with_complex_numbers(theta1_deg, theta2_deg, l1, l2):
         ((-90, 90), (0.8, -1)),
     ],
 )
-def test_known_poses(pose_deg, position):
+def test_fk_gives_known_positions(pose_deg, position):
     assert forward_kinematics(*pose_deg) == pytest.approx(position, abs=1e-6)
 
 
@@ -78,7 +78,9 @@ def test_both_solutions_reach_the_target_and_lie_on_their_side(theta1_deg, theta
 
 
 @given(angles, st.floats(1, 179), st.sampled_from([-1, 1]), lengths, lengths)
-def test_ik_gives_the_pose_back_in_the_branch_of_its_sign(theta1_deg, bend_deg, sign, l1, l2):
+def test_ik_finds_the_pose_again_in_the_branch_of_the_sign_of_theta2(
+    theta1_deg, bend_deg, sign, l1, l2
+):
     target = end_effector(theta1_deg, sign * bend_deg, l1, l2)
     branch = 'elbow_up' if sign < 0 else 'elbow_down'
     theta1, theta2 = inverse_kinematics(target.real, target.imag, l1, l2)[branch]
@@ -138,7 +140,9 @@ def test_a_singular_target_has_one_pose(target, links, pose_deg):
         ((1, 1.1), 0, False),
     ],
 )
-def test_borders(direction, links, distance, reachable):
+def test_a_target_up_to_a_nanometre_outside_the_borders_is_reachable(
+    direction, links, distance, reachable
+):
     target = distance * direction
     if not reachable:
         with pytest.raises(ValueError, match=r'too (far|near)'):
@@ -163,7 +167,7 @@ def test_borders(direction, links, distance, reachable):
         (([1, NAN], 0), 'x must be finite'),
     ],
 )
-def test_ik_refuses(arguments, message):
+def test_ik_refuses_bad_targets_and_link_lengths(arguments, message):
     with pytest.raises(ValueError, match=message):
         inverse_kinematics(*arguments)
 
@@ -177,7 +181,7 @@ def test_ik_refuses(arguments, message):
         ((0, 0, 1, 0), 'l2 must be a length above 0 m'),
     ],
 )
-def test_fk_refuses(arguments, message):
+def test_fk_refuses_bad_angles_and_link_lengths(arguments, message):
     with pytest.raises(ValueError, match=message):
         forward_kinematics(*arguments)
 
