@@ -1,4 +1,4 @@
-"""What axe-core finds in the pages that students read: nothing serious."""
+"""axe-core finds no serious fault in the pages that students read."""
 
 from datetime import datetime
 
@@ -16,11 +16,11 @@ from grader.report.report import Run, write_report
 RELEASED = ROOT / 'notebooks'
 LESSONS = sorted(RELEASED.glob('**/*.ipynb'))
 OF_THE_THEME = ['.jp-InputPrompt', '.jp-OutputPrompt', '.highlight']
-"""Coloured by Jupyter and not by us: the numbers of cells, and the code."""
+"""Parts whose colours Jupyter chooses: the numbers of cells, and the code."""
 LINKS_OF_THE_THEME = {'link-in-text-block': {'enabled': False}}
-"""Nor do we choose that links in a notebook are not underlined."""
+"""Jupyter chooses, too, that links in a notebook are not underlined."""
 NO_WORDS = 'No description has been provided for this image'
-"""What nbconvert says of a picture that comes without alternative text."""
+"""The text that nbconvert gives a picture without alternative text."""
 
 pytestmark = drives_chromium
 

@@ -50,7 +50,7 @@ class Machine:
     [
         ([0.1, 0.1, 0.1, 0.1], [4, 6, 8, 9, 9]),
         ([0.9, 0.9], [4, 4, 4]),
-        # nobody is sent away: where five are too many, the next five to end are not replaced
+        # none is stopped: if five are too many, the next five that end are not replaced
         ([0.1, 0.1, 0.1, *[0.9] * 6], [4, 6, 8, 9, 8, 7, 6, 5, 4, 4]),
         ([0.1, *[(IDLE_SHARE + BUSY_SHARE) / 2] * 2], [4, 6, 6, 6]),
         ([0.1, 0.9, 0.1], [4, 6, 5, 6]),

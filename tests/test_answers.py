@@ -15,7 +15,7 @@ ORDINARY = {
     *('five_hz-drops_tenth', 'ik_solver_node-gives_up', 'fix_topic_name-lags'),
     *('ik_client-await_in_the_group', 'count_turns-a_bound_less'),
 }
-"""Answers that tell most of a grader that judges wrongly: few enough to be tried at once."""
+"""Answers that a faulty grader most likely misjudges: few enough to be graded together."""
 
 
 def wrongly_judged(answers: list[Answer], course: Course) -> list[str]:

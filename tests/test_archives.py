@@ -40,7 +40,7 @@ def members(archive, *, files=100, size=10_000_000):
     aside.mkdir()
     left = UnpackLimits(files, size)
     found = list(unpack(archive, name=archive.name, aside=aside, left=left, wanted=lambda n: True))
-    # whatever happens: plain files under names of ours, and none that nobody was told of
+    # in every case: plain files under our own names, and none that the result does not list
     assert set(aside.rglob('*')) == {m.file for m in found if m.file}
     assert all(p.is_file() and not p.is_symlink() for p in aside.iterdir())
     assert {p.name for p in archive.parent.iterdir()} == {'aside', archive.name}
@@ -48,7 +48,7 @@ def members(archive, *, files=100, size=10_000_000):
 
 
 def said(archive, **allowance):
-    """What became of each entry: its content, or why not."""
+    """What became of each entry: its content, or why it was refused."""
     return {
         '/'.join(m.parts): m.problem or m.file.read_bytes().decode()
         for m in members(archive, **allowance)

@@ -147,7 +147,7 @@ def ours(names):
     return {name for name in names if '@' not in name and not name.startswith(('__', '_Z'))}
 
 
-# --- at home everywhere --------------------------------------------------------------------------
+# --- the interfaces in use -----------------------------------------------------------------------
 
 
 @pytest.mark.starts

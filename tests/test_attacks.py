@@ -1,4 +1,4 @@
-"""Attacks on the grader, honest students in between: nobody gains, leaks, stays or harms.
+"""Attacks on the grader among honest students: none gains points, leaks, persists or harms.
 
 `attacks/answers/` holds a file for each attack that is an answer, `attacks/notebooks.py` those
 that are something else. The first line of each attack says what it tries, and what it earns, if
@@ -51,7 +51,7 @@ from grader.workers.workers import Workers
 pytestmark = pytest.mark.isolation
 
 EVERY = 5
-"""One honest student for so many attacks."""
+"""There is one honest student for this number of attacks."""
 BRIEF = (sys.executable, str(FOLDER.with_name('brief_worker.py')))
 
 

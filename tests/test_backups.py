@@ -62,7 +62,7 @@ def test_a_backup_is_restored_by_copying_it(course):
     course.database.write_bytes(b'scrap' * 1000)
     with pytest.raises(GradebookError, match='is damaged'):
         bring_in_order(course)
-    [backup] = backups(course)  # none of what is damaged
+    [backup] = backups(course)  # none of the damaged database
     shutil.copy(backup, course.database)
     bring_in_order(course)
     assert things(course.database) == [1]

@@ -1,4 +1,4 @@
-"""Whatever prevents a sandbox is named, with the smallest change that allows it."""
+"""Each cause that prevents a sandbox is reported, with the smallest change that allows one."""
 
 import importlib.util
 import json

@@ -27,9 +27,9 @@ QUIZZES = sorted(path.name for path in ROOT.glob('notebooks/quiz_*.ipynb'))
 PAGES = ('terms.md', 'what_next.md')
 CHINESE = re.compile(r'[\u3400-\u9fff]')
 ENGLISH = re.compile(r"[A-Za-z][a-z']+(?:[ ,:;]+[A-Za-z][a-z']*){3,}")
-"""Four Latin words, one behind the other: no name."""
+"""Four Latin words in a row: more than a name."""
 RAW = re.compile(r'\*\*|`|\]\(|(?<![\w*])\*(?=[^\s*])')
-"""Markdown that was not understood."""
+"""Markdown that is shown as it is written."""
 BLOCKS = """text => {
     const copy = text.cloneNode(true);
     copy.querySelectorAll('code, pre, a[href^="http"]').forEach(each => each.remove());

@@ -1,4 +1,4 @@
-"""What a hostile student handed in, in the instructor's browser: it is shown, and does nothing."""
+"""A hostile submission in the instructor's browser is shown, and runs nothing."""
 
 import os
 import socket
@@ -36,7 +36,7 @@ pytestmark = drives_chromium
 ELSEWHERE = 'evil.invalid'
 BY_NAME = '<img src=x onerror=alert(1)>'
 STUDENT = "'-alert(1)-'&lt;{{7*7}}"
-"""What a folder can be called; one of BY_NAME is not graded."""
+"""A name that a folder can have; a folder named BY_NAME is not graded."""
 EVIL = (
     f'evil <script>alert(1)</script>{BY_NAME}<svg onload=alert(1)></svg>'
     '<iframe srcdoc="<script>parent.alert(1)</script>"></iframe>'
@@ -94,7 +94,7 @@ class Browser:
         if '127.0.0.1' in route.request.url or route.request.url.startswith(('file:', 'data:')):
             route.continue_()
         else:
-            route.abort()  # nothing here needs the world
+            route.abort()  # no test here needs the internet
 
     def harm_of(self, address):
         """Open a page; return what it did, and what it would do when touched."""
@@ -200,7 +200,7 @@ def test_an_unescaped_page_is_seen_to_do_harm(browser, tmp_path):
 def test_a_page_of_feedback_runs_no_hostile_code(browser, course):
     (page,) = write_feedback(course)
     assert browser.harm_of(page.as_uri()) == []
-    assert 'evil &lt;script&gt;' in browser.text()  # so it is shown
+    assert 'evil &lt;script&gt;' in browser.text()  # the text is shown
 
 
 def test_the_report_of_a_run_runs_no_hostile_code(browser, course):

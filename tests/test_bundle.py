@@ -47,14 +47,14 @@ def made(tmp_path_factory):
 
 @pytest.fixture
 def course(made, tmp_path):
-    """The small course, to be spoiled."""
+    """A copy of the small course that a test may change."""
     shutil.copytree(made.root, tmp_path / 'course')
     return Course.at(tmp_path / 'course')
 
 
 @pytest.fixture
 def fresh_lessons(monkeypatch):
-    """Spare the time that a release takes: what else is wrong is looked for."""
+    """Skip the slow comparison with a fresh release: other faults are looked for."""
     monkeypatch.setattr('grader.authoring.bundle.stale_or_leaking', lambda course: [])
 
 
@@ -256,7 +256,8 @@ def in_the_index(course, text):
 def in_a_file(name):
     def append(course, text):
         file = course.root / name
-        file.write_text(f'{text}\n{file.read_text()}')  # above: of the pins, the bundle has a part
+        # at the top: a bundle has only the first pins
+        file.write_text(f'{text}\n{file.read_text()}')
 
     append.__name__ = name
     return append

@@ -1,4 +1,4 @@
-"""In which folder cgroups can be made, on machines of all kinds."""
+"""The folder in which cgroups can be made, on machines of all kinds."""
 
 import os
 import subprocess
@@ -17,7 +17,7 @@ OFF = 'cpu io memory pids'
 
 @pytest.fixture(autouse=True)
 def fresh():
-    """What was found out about this machine is forgotten, before and after."""
+    """Clear the cached facts about this machine, before and after a test."""
     caches = (module._found, systemd_scopes.has_scopes)
     for each in caches:
         each.cache_clear()
@@ -50,7 +50,7 @@ def machine(tmp_path, monkeypatch):
 def tree(folder, *, processes='', controllers=OFF, is_root=False):
     """Make a folder look like a cgroup of version 2."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / 'cgroup.procs').write_bytes(processes.encode())  # it is no move
+    (folder / 'cgroup.procs').write_bytes(processes.encode())  # `switches` counts no move
     (folder / 'cgroup.controllers').write_text(controllers)
     (folder / 'cgroup.subtree_control').write_text('')
     if not is_root:
@@ -59,7 +59,7 @@ def tree(folder, *, processes='', controllers=OFF, is_root=False):
 
 @pytest.fixture
 def switches(monkeypatch):
-    """Let files of controls behave as those of Linux: what is switched on stays on."""
+    """Let control files behave like those of Linux: enabled controllers stay enabled."""
     write = Path.write_text
     moved = []
 

@@ -1,4 +1,4 @@
-"""What Linux counts of a room, what it does when that is too much, and that nothing is left."""
+"""Linux counts what a room uses, and enforces its limits; no cgroup is left."""
 
 import dataclasses
 import os

@@ -23,7 +23,7 @@ STEP_SEC = imported('move_arm_server').STEP_SEC
 
 
 def check_all():
-    """All that the exercise asks for, as its grade cells do."""
+    """Check everything that the exercise asks for, as its grade cells do."""
     move_arm, numbers = action('/move_arm', MoveArm), random.Random(7)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
     start, far = (moves.choose(numbers, farther=2, sign=sign) for sign in (1, -1))
@@ -76,7 +76,7 @@ class HandlesAccepted(TimerDriven):
 
 
 class FixedSteps(MoveArmServer):
-    """Adds speed × step, whatever the clock says."""
+    """Adds speed × step, without a look at the clock."""
 
     def step(self, handle):
         done = self.part * self.seconds + STEP_SEC
@@ -228,7 +228,7 @@ def ticks(monkeypatch):
 def test_a_move_of_a_robot_minute_is_checked_on_the_simulated_clock(
     run, ticks, node_class, least, most
 ):
-    """In coarse steps if the server can follow them; one that adds up steps cannot."""
+    """The clock is driven in coarse steps, except for a server that adds up its own steps."""
     run(node_class)
     move_arm = action('/move_arm', MoveArm)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.02)
@@ -239,7 +239,7 @@ def test_a_move_of_a_robot_minute_is_checked_on_the_simulated_clock(
 
 @pytest.fixture
 def loses_its_first_time(monkeypatch):
-    """A node that was switched gets none of `/clock` before the first tick, the second time."""
+    """The second simulated clock publishes nothing on `/clock` before its first tick."""
     publish, clocks = SimulatedClock._publish, []
 
     def lose(clock):
@@ -253,7 +253,7 @@ def loses_its_first_time(monkeypatch):
 
 
 def test_a_node_that_receives_its_first_clock_message_late_still_passes(run, loses_its_first_time):
-    """What it computes from the time at which it has accepted a goal would be off by decades."""
+    """A position computed from a wall time of acceptance would be off by decades."""
     run(MoveArmServer)
     move_arm = action('/move_arm', MoveArm)
     moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.1)
@@ -262,7 +262,7 @@ def test_a_node_that_receives_its_first_clock_message_late_still_passes(run, los
 
 
 class ReportsSeldom(MoveArmServer):
-    """A step of 0.2 s: its moves end up to so much late, and are no slower for that."""
+    """A step of 0.2 s: its moves end up to 0.2 s late, and are not slower."""
 
     async def execute(self, handle):
         self.begin(handle)

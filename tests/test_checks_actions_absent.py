@@ -1,4 +1,4 @@
-"""No server of an action, or one too many: the check looks for it and says where it is."""
+"""No server of an action, or two: the check names the node and the likely cause."""
 
 import pytest
 from my_robot_basics.checks import CheckFailed, action, awaited_servers, moves

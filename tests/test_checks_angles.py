@@ -1,4 +1,4 @@
-"""Angles in a log: what counts as one, and what the check says about missing ones."""
+"""Angles in a log: which numbers count as angles, and the advice for missing ones."""
 
 import math
 

@@ -76,7 +76,7 @@ def test_a_form_that_answers_share_with_other_lines_decides_nothing():
         ('(0.00, 3.00) is too far', False),
     ],
 )
-def test_zeros_alone_stand_for_angles(text, stands_for_them):
+def test_a_pair_of_decimal_zeros_counts_as_angles(text, stands_for_them):
     assert answers.stands_for_angles([], text) is stands_for_them
 
 

@@ -8,7 +8,7 @@ from my_robot_basics.checks.robot_time import DrivenTime
 
 
 class Clock(DrivenTime):
-    """While it stands still, some feedback comes."""
+    """A clock that brings some feedback while it stands still."""
 
     def __init__(self, told, comes):
         self.told, self.comes = told, comes

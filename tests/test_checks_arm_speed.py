@@ -1,4 +1,4 @@
-"""How exact a speed has to be, whatever the machine: 2 % of a robot minute."""
+"""A speed has to be exact to 2 % of a robot minute, on any machine."""
 
 import contextlib
 import itertools
@@ -18,7 +18,7 @@ SPEED = 0.02
 
 
 def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0, lost_sec=0.0):
-    """What comes of a move that took so long, in finer steps, too; `reported` are (s, rad)."""
+    """Judge a move of this duration, which finer steps show, too; `reported` are (s, rad)."""
     arm = SimpleNamespace(
         start=(0.0, 0.0),
         time=SimpleNamespace(is_driven=is_driven, at_ns=lambda sent_ns: sent_ns),
@@ -82,7 +82,7 @@ def test_a_wrong_speed_fails_with_its_likely_cause(seconds, hint):
         judge(seconds)
 
 
-# --- what feedback tells -------------------------------------------------------------------------
+# --- the speed that feedback shows ---------------------------------------------------------------
 
 BRIEF_SEC = 1.6
 BRIEF = 1.2 / BRIEF_SEC

@@ -11,7 +11,7 @@ from my_robot_basics.graph.graphs import SETTLED_SEC
 
 @pytest.fixture
 def waited(monkeypatch):
-    """What is waited for; `wall` and `free` seconds, and what the machine gives of them."""
+    """The waits in `wall` and `free` seconds; `gives` is the share of time that is free."""
     told = SimpleNamespace(wall=[], free=[], comes=False, gives=1.0, is_settled=False)
 
     def spin_until(is_there, *, timeout_sec):

@@ -26,7 +26,7 @@ class Watch:
 
 
 class Kernel:
-    """Each check takes so long, and is given up as a kernel gives cells up."""
+    """Each check takes this time, and is given up as a kernel gives cells up."""
 
     def __init__(self, wall_sec, free_sec):
         self.takes, self.asked = (wall_sec, free_sec), 0
@@ -47,7 +47,7 @@ def watch(monkeypatch):
 
 
 def run(kernel, times):
-    """What becomes of so many checks."""
+    """Run this number of checks; return why each was given up, or ''."""
     budget = ChecksBudget()
 
     async def all_of_them():

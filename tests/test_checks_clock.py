@@ -32,7 +32,7 @@ from std_msgs.msg import Empty
 
 TOPIC = '/kinematics/joint_states'
 SLOWEST_MEDIAN_SEC = barriers.SLOWEST_MEDIAN_SEC
-"""As it is for a student: the tests here are patient."""
+"""The value for a student: the fixture `patient` raises it for the tests here."""
 
 
 pytestmark = pytest.mark.usefixtures('patient')
@@ -100,7 +100,7 @@ def spinning(make_node):
 
 @pytest.mark.slow
 def test_a_check_waits_for_a_node_that_is_slow_to_return():
-    # what looks at it next would find it frozen, on a clock that nobody drives any more
+    # otherwise the next check finds it frozen, on a clock that nobody drives any more
     slow_to_return = imported('slow_to_return').SlowToReturn
     with spinning(lambda context: slow_to_return(context=context)) as node:
         topic(TOPIC).record(seconds=1.0)
@@ -123,7 +123,7 @@ def test_a_timer_due_when_the_simulated_clock_ends_fires_on_wall_time():
     def make_node(context):
         node = Node('late', context=context)
         node.create_timer(0.2, fired.set, callback_group=gate)
-        # whatever the robot's clock does, the executor wakes up and sees that the gate is open
+        # on a steady clock: the executor wakes up at any time and sees that the gate is open
         node.create_timer(0.1, lambda: None, clock=RclpyClock(clock_type=ClockType.STEADY_TIME))
         return node
 
@@ -239,12 +239,13 @@ def look_at_tired(**options):
 @pytest.mark.slow
 @pytest.mark.parametrize('rests', [0, 15])
 def test_a_callback_longer_than_its_period_is_detected_early_or_late(monkeypatch, rests):
-    monkeypatch.setattr(barriers, 'PROMPT_SEC', 5.0)  # what is due is waited for, and not asked
+    # due messages are awaited, and not asked about
+    monkeypatch.setattr(barriers, 'PROMPT_SEC', 5.0)
     assert str(look_at_tired(rests=rests, works_sec=0.25)) == driven_topic.OVERRUNS
 
 
 def test_a_callback_that_works_a_little_after_its_message_is_not_too_slow(monkeypatch):
-    """Only ticks with nothing due are asked about, and these wait for it."""
+    """Only ticks without a due message are acknowledged, and these wait for the callback."""
     monkeypatch.setattr(barriers, 'SLOWEST_MEDIAN_SEC', SLOWEST_MEDIAN_SEC)
     assert look_at_tired(rests=0, works_sec=0.03).rate_hz == pytest.approx(5.0)
 
@@ -290,7 +291,7 @@ def test_a_tick_is_acknowledged_if_its_due_message_does_not_come(monkeypatch):
 
 
 class Counter(Node):
-    """Publishes twice a second, with every so manieth call of a timer that steps skip calls of."""
+    """Publishes twice a second, on every nth call of a timer; coarse steps skip calls."""
 
     def __init__(self, *, calls_each, **kwargs):
         super().__init__('counter', **kwargs)

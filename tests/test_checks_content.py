@@ -1,4 +1,4 @@
-"""Equal messages compare as equal, whatever was in memory before."""
+"""Equal messages compare as equal, with any bytes in memory before."""
 
 import random
 
@@ -10,7 +10,7 @@ from sensor_msgs.msg import ChannelFloat32, JointState, PointCloud
 
 
 def bare():
-    """Its two empty sequences of doubles come after four bytes that no field fills."""
+    """A message with two empty sequences of doubles after four bytes that no field fills."""
     message = JointState(name=['joint1', 'joint2'], position=[0.5, -1.2])
     message.header.frame_id = 'base_link'
     return message

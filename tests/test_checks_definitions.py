@@ -34,7 +34,7 @@ POINTS = {'turns_msg': 1.0, 'count_turns_srv': 2.0}
 
 @pytest.fixture
 def check(monkeypatch):
-    """Judge two texts as the lesson's grade cell does; what is right is left out."""
+    """Judge two texts as the lesson's grade cell does; a text that is left out is right."""
 
     def run(turns_msg=TURNS, count_turns_srv=COUNT_TURNS):
         notebook = {'turns_msg': turns_msg, 'count_turns_srv': count_turns_srv}

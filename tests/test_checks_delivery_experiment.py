@@ -1,4 +1,4 @@
-"""What arrives on a stage, and that no message is called lost before it had its chance."""
+"""Which messages arrive on a stage; none counts as lost before it could arrive."""
 
 import pytest
 from my_robot_basics.checks import delivery_experiment as stage_module

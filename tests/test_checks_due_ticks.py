@@ -27,10 +27,10 @@ def test_a_message_is_due_once_three_have_come_equally_far_apart():
     [
         ([2, 2], {}),
         ([2, 3, 2, 3, 2, 3], {}),
-        # with no tick between them, nothing else would come to light
+        # with no empty tick between them, other messages would not be noticed
         ([1, 1, 1, 1, 1, 1], {}),
         ([2, 2, 2, 2], {'messages': 2}),
-        # it may still be at work when the next tick comes
+        # the callback may still run when the next tick comes
         ([2, 2, 2, 2], {'took_sec': 0.1}),
     ],
 )

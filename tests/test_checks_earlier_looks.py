@@ -1,4 +1,4 @@
-"""When a check takes what was recorded for the one before it, and when it looks for itself."""
+"""When a check uses the recording of an earlier check, and when it makes its own."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def test_room(monkeypatch):
 
 
 class Topic:
-    """A topic on which one message comes each 0.2 s; counts who looks."""
+    """A topic on which one message comes each 0.2 s; counts the looks."""
 
     def __init__(self, **of_recording):
         self.looks = 0

@@ -1,4 +1,4 @@
-"""What a check knows of how a server has answered before, in another grade cell, too."""
+"""What a check knows of a server's earlier answers to goals, also in other grade cells."""
 
 import pytest
 from my_robot_basics.checks import goal_answers

@@ -99,7 +99,7 @@ def test_a_beat_that_comes_during_the_wait_for_a_turn_counts(look):
 
 
 class Waits(Fake):
-    """Counts ten times a second, but while it waits for a while upon each message."""
+    """Counts ten times a second, except while it waits after each message."""
 
     def __init__(self, waits_sec, **options):
         super().__init__(every(0.1), **options)

@@ -29,7 +29,7 @@ def test_a_volatile_subscription_never_receives_earlier_messages(run, place, tim
         String, '/monitor/arm_description', lambda message: heard.append(message.data), 10
     )
     with volatile_monitor(run, place):
-        # what the monitor says before it has met us would be lost
+        # messages that the monitor publishes before it has discovered us would be lost
         greeter = probe.create_publisher(String, '/arm_description', 10)
         live.wait_until(lambda: greeter.publish(String(data='hello')) or 'hello' in heard, 20.0)
         probe.destroy_publisher(greeter)

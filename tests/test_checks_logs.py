@@ -66,7 +66,7 @@ def test_a_callback_that_warns_and_then_raises_fails():
             ask(log, TOO_FAR)
             with pytest.raises(CheckFailed, match=r'raised ValueError: out of reach .*fix that'):
                 log.expect_warning()
-        with rosout('ik_solver_node') as log:  # what it raised before is no answer's fault
+        with rosout('ik_solver_node') as log:  # an earlier exception is not blamed on this answer
             ask(log, TARGET)
             log.expect_angles(ANGLES)
     finally:

@@ -1,4 +1,4 @@
-"""Which θ1 a log puts together with which θ2, however it shows them."""
+"""Which θ1 a log pairs with which θ2, in many layouts."""
 
 import pytest
 from my_robot_basics.checks import pairing
@@ -23,14 +23,14 @@ def by_turns(*pairs):
         [str(angle) for angle in (*UP, *DOWN)],
         [str(angle) for angle in (UP[0], DOWN[0], UP[1], DOWN[1])],
         [f'{UP[0]}\n{DOWN[1]}\n{UP[1]}\n{DOWN[0]}'],
-        # a line for each angle puts nothing together by itself, in whatever order
+        # one line for each angle pairs none of them, in any order
         [str(angle) for angle in (UP[0], DOWN[1], DOWN[0], UP[1])],
         # sorted, and a set: 1.46 and 65.92 between the others
         [' '.join(map(str, sorted(BOTH)))],
         [by_turns(sorted(BOTH)[:2]), by_turns(sorted(BOTH)[2:])],
         [f'{sorted(BOTH, reverse=True)}'],
         ['angles: {65.92, 74.04, 1.46, -74.04}'],
-        # what each is called puts it with its own
+        # names pair each angle with the angle of its own branch
         ['up θ1=65.92', 'down θ2=74.04', 'up θ2=-74.04', 'down θ1=1.46'],
         ['up θ1=65.92, down θ2=74.04', 'down θ1=1.46, up θ2=-74.04'],
         ['θ1_up 65.92 θ2_down 74.04 θ1_down 1.46 θ2_up -74.04'],
@@ -38,7 +38,7 @@ def by_turns(*pairs):
         ['solution 1: 65.92, solution 2: 74.04, solution 2: 1.46, solution 1: -74.04'],
         # pairs, and all of it once more in some order
         [by_turns(UP), by_turns(DOWN), by_turns((UP[0], DOWN[1]), (DOWN[0], UP[1]))],
-        # joint by joint in two orders: nothing tells what belongs together
+        # joint by joint in two orders: no angle is paired with another one
         [f'{UP[0]} {DOWN[0]} {DOWN[1]} {UP[1]}'],
         ['no numbers', by_turns(UP, DOWN), '2 solutions'],
         # a distance or bearing that happens to be one of them
@@ -65,7 +65,7 @@ def test_solutions_may_be_logged_in_many_ways(texts):
         ['74.04 65.92; -74.04 1.46'],
         ['up: 1.46 and -74.04 or down: 65.92 and 74.04'],
         ['θ1 = 65.92°, θ2 = 74.04°', 'θ1 = 1.46°, θ2 = -74.04°'],
-        # what each is called puts it with the other branch's
+        # names pair each angle with the angle of the other branch
         ['up θ1=65.92', 'up θ2=74.04', 'down θ1=1.46', 'down θ2=-74.04'],
         ['up θ1=65.92', 'down θ1=1.46', 'up θ2=74.04', 'down θ2=-74.04'],
         ['θ1_up 65.92 θ2_up 74.04 θ1_down 1.46 θ2_down -74.04'],

@@ -58,7 +58,7 @@ def test_an_honest_way_passes(run, NodeClass):
 @pytest.mark.parametrize('NodeClass', [adjustable.ReadsInEachTick, adjustable.SleepsInAThread])
 def test_an_honest_way_passes_at_each_rate_that_a_check_may_set(run, NodeClass):
     run(NodeClass)
-    # 20 Hz: who looks at the clock every 10 ms needs steps that 10 ms are a multiple of
+    # 20 Hz: a node that looks at the clock every 10 ms needs steps that divide 10 ms
     rate = rate_parameter('/adjustable_publisher', 'rate_hz', topic_name=TOPIC)
     rate.expect_follows(12.5, 25.0, 4.0, 20.0)
 

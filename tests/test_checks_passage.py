@@ -18,7 +18,7 @@ GAP_NS = SEC // 100
 
 
 class Node:
-    """Republishes each message at once, but only the second of those pairs, counted from 0."""
+    """Republishes each message at once, except the first of each pair that `loses` selects."""
 
     def __init__(self, loses, apart_ns=GAP_NS):
         self.loses, self.received, self.numbers = loses, [], count()
@@ -112,7 +112,7 @@ def test_repeated_messages_from_a_queue_do_not_count_as_invented(monkeypatch, is
 
 
 class SlowNode:
-    """Has a queue of depth 1. Some calls of its callback take so long."""
+    """Has a queue of depth 1; `takes_sec` says how long each call of its callback takes."""
 
     def __init__(self, takes_sec):
         self.takes_sec, self.numbers = takes_sec, count()
@@ -133,7 +133,7 @@ class SlowNode:
 
 @pytest.mark.parametrize(('slow_sec', 'lost'), [(0.01, 0), (0.3, 0), (5.0, 4)])
 def test_a_slightly_late_message_is_not_pushed_out_of_a_queue_of_depth_1(slow_sec, lost):
-    """Four such calls on a busy machine were enough for "messages that are not republished"."""
+    """Four slow calls on a busy machine were enough for "messages that are not republished"."""
     node = SlowNode(lambda number: slow_sec if number in (3, 9, 15, 21) else 0.001)
     watcher = SimpleNamespace(spin_for=lambda _: None, spin_until_free=node.spin)
     passage = Passage(

@@ -1,4 +1,4 @@
-"""Which spacing of messages is one timer's: turns, bursts, and what is left out."""
+"""Which messages come from one timer, and which have alternating gaps, bursts or omissions."""
 
 import itertools
 import math
@@ -123,7 +123,7 @@ def test_messages_that_finer_steps_separate_are_no_burst():
         ([0.1, 0.1, 0.4], True),
         ([0.0, 0.1, 0.1], True),  # two timers, of 0.2 s and of 0.1 s
         ([0.18, 0.22], False),  # the wall clock looks more closely
-        ([*[0.21] * 6, 0.14], False),  # who looks each 0.07 s whether 0.2 s are over
+        ([*[0.21] * 6, 0.14], False),  # a loop that looks each 0.07 s whether 0.2 s are over
         ([0.2], False),
     ],
 )

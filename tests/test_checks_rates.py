@@ -31,9 +31,9 @@ LATE_FIRST = [*every(0.01, 21), *(0.2 * number for number in range(2, 21))]
     ('times', 'was_busy', 'looks'),
     [
         (FAST, False, 0),
-        (FAST, True, 1),  # whatever made it so, it is looked at once more
+        (FAST, True, 1),  # on a busy machine, there is always a second look
         (every(0.14, 28), False, 1),  # 7.1 Hz: near enough to be looked at once more
-        (LATE_FIRST, False, 1),  # what was late came at once
+        (LATE_FIRST, False, 1),  # late messages came at once
         (FAST[:30], False, 1),
     ],
 )

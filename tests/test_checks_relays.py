@@ -1,4 +1,4 @@
-"""A node that passes messages on is judged by what it publishes, whatever its own QoS."""
+"""A node that passes messages on is judged by what it publishes, with any QoS of its own."""
 
 import pytest
 from my_robot_basics.checks import CheckFailed, relay, relay_endpoints, relays, topic_endpoints

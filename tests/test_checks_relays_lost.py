@@ -134,7 +134,7 @@ class SwapsPairs(Counts):
 
 @pytest.fixture
 def all_the_time(monkeypatch):
-    """On any machine: two lost messages do not show a pattern, and more would take longer."""
+    """Give checks more time on any machine: two lost messages do not show a pattern."""
     monkeypatch.setattr(passage, 'MOST_SEC', 60.0)
 
 

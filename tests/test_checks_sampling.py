@@ -104,7 +104,7 @@ def test_a_node_that_may_ignore_the_clock_is_tested_once_with_it_standing_still(
 
 @pytest.mark.usefixtures('patient')
 def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
-    """Those that come one tick later would ask for ever finer steps."""
+    """Messages that come one tick later would cause ever finer steps."""
     tick, steps_sec = DrivenTopic.tick, []
 
     def note_and_tick(driven, step_ns):

@@ -1,4 +1,4 @@
-"""Inputs: the same for a seed and a label, and other ones each time if there is no seed."""
+"""Inputs are the same for one seed and label, and differ each time if there is no seed."""
 
 import pytest
 from my_robot_basics.checks import inputs

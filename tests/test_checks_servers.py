@@ -1,4 +1,4 @@
-"""A node that calls a service passes, however it calls, and finds no server but ours."""
+"""A node that calls a service passes with each correct way; a second server fails it."""
 
 import collections
 import threading
@@ -141,7 +141,7 @@ def test_a_client_passes_if_the_server_answers_in_reverse_order(run):
 
 
 class ServesLater(IKClient):
-    """Brings a server along once it is asked, in a node that no list of the course's has."""
+    """Starts a server with its first request, in a node that the course's lists leave out."""
 
     def ask(self, target):
         self.own = Node('_own', context=self.context)

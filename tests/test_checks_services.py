@@ -25,7 +25,7 @@ OUT_OF_REACH = [(2.5, 0.0), (0.05, 0.0), (math.nan, 0.5), (0.5, math.inf)]
 
 
 EXECUTORS, STOP = [], threading.Event()
-"""Those that nodes have made for themselves, and what ends a wait."""
+"""Executors that nodes have made for themselves, and an event that ends a wait."""
 
 
 @pytest.fixture

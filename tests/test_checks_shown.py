@@ -1,4 +1,4 @@
-"""What the feedback shows of a message that arrived."""
+"""How the feedback shows a message that arrived."""
 
 from geometry_msgs.msg import Point
 from my_robot_basics.checks.shown import shown

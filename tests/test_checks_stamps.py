@@ -56,7 +56,7 @@ def test_stamps_of_the_nodes_clock_pass_and_use_sim_time_is_reset(run, node_clas
     recording = topic(TOPIC).record(seconds=10.0)
     assert recording.clock == 'wall'
     recording.assert_stamps()
-    # no trace: it is on its own clock again, and alive
+    # no trace: the node is on its own clock again, and alive
     assert node.get_parameter('use_sim_time').value is False
     topic(TOPIC).wait_for(timeout_sec=5.0)
 

@@ -14,7 +14,7 @@ KEPT_WAITING = [0.2, 0.21, 0.9, 0.2, 0.33, 0.2, 0.2, 0.8, 1.1, 0.2, 0.27, 0.5]
 
 @pytest.fixture
 def told(monkeypatch):
-    """What tells the type of the failure of 5 Hz where no callback has raised."""
+    """A function that returns the type of the failure for 5 Hz, if no callback has raised."""
     monkeypatch.setattr(recording_module.callbacks, 'expect_none_so_far', lambda names: None)
 
     def type_of_failure(recording):

@@ -73,7 +73,7 @@ def test_publishing_to_a_subscription_of_another_type_names_the_type(run):
 
 
 def test_an_answer_of_another_type_is_named(run):
-    """Its fields would be looked for in vain."""
+    """A look for its fields would find none."""
     run(Echo, 10)
     words = 'expected PointStamped messages on /answer, saw JointState: compare the message type'
     with pytest.raises(CheckFailed, match=words):
@@ -208,7 +208,7 @@ def test_messages_before_the_first_question_fail(run):
 
 
 class AnswersEachOther(Echo):
-    """Leaves out each second question"""
+    """Answers only every second question"""
 
     is_next = False
 

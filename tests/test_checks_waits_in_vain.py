@@ -51,7 +51,7 @@ def test_finished_goals_and_unusable_feedback_show_no_wait_in_vain():
 
 
 class Time:
-    """Counts what is waited for."""
+    """Records the seconds of each wait."""
 
     def __init__(self, is_driven):
         self.is_driven, self.waits = is_driven, []

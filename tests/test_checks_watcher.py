@@ -112,7 +112,7 @@ def test_watchers_of_a_grade_cell_share_a_participant_until_the_cell_ends(node, 
     with Watcher(shared=True) as third:
         assert third.context is first.context
         assert third.spin_until(lambda: '/talker' in graphs.node_names(third.node), timeout_sec=10)
-    # nobody has watched meanwhile, and the participant has met the node already
+    # no watcher was open meanwhile, but the participant has discovered the node already
     with Watcher(shared=True) as next_one:
         assert '/talker' in graphs.node_names(next_one.node)
     end_cell()

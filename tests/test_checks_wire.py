@@ -1,4 +1,4 @@
-"""The codec: everything plain survives the journey, nothing hostile does more than be refused."""
+"""The codec returns plain values unchanged, and refuses hostile ones."""
 
 import base64
 import contextlib

@@ -85,9 +85,9 @@ hello_node.main()
     'moment', ['before init', 'after init', 'before the node', 'in the node', 'in a callback']
 )
 def test_a_signal_at_any_moment_ends_a_node(start, moment, number):
-    """Soon; what it prints in the few milliseconds of its start is rclpy's own affair.
+    """The node ends soon; what it prints while it starts is rclpy's own affair.
 
-    rclpy's handlers shut the context down in another thread, whatever the node is just making.
+    rclpy's handlers shut the context down in another thread, at any point of the node's start.
     """
     process = start(sys.executable, '-c', START_UP, moment, number)
     output(process)
@@ -148,7 +148,7 @@ def test_a_node_may_end_itself(start):
     assert process.returncode == 0
 
 
-def test_publisher_and_subscriber_talk(start):
+def test_the_subscriber_receives_poses_of_the_publisher(start):
     start(BIN / 'kinematics_publisher')
     subscriber = start(BIN / 'kinematics_subscriber')
     lines = [subscriber.stdout.readline() for _ in range(3)]

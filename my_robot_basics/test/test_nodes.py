@@ -84,7 +84,7 @@ def start_subscriber(stage):
 
 
 def replies(stage, message):
-    """What the subscriber logs about one message, up to its verdict."""
+    """Publish one message; return what the subscriber logs about it, up to its verdict."""
     before = len(stage.peer.logged)
     stage.peer.publisher.publish(message)
     stage.wait_until(

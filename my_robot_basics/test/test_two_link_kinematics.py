@@ -1,4 +1,4 @@
-"""Judged by complex numbers (FK) and by intersecting two circles (IK), not by a second copy."""
+"""FK is compared with complex numbers, and IK with the intersections of two circles."""
 
 import cmath
 import math
@@ -186,7 +186,7 @@ def test_fk_refuses_bad_angles_and_link_lengths(arguments, message):
         forward_kinematics(*arguments)
 
 
-def test_arrays_give_what_their_elements_give():
+def test_arrays_give_the_same_results_as_their_elements():
     theta1_deg, theta2_deg = (
         np.array([[-80.0], [0.0], [45.0]]),
         np.array([-120.0, -1.0, 5.0, 90.0]),
