@@ -33,7 +33,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def lacking(names, *packages):
-    """The sentence, and all of it."""
+    """Return the whole sentence about what is missing."""
     return (
         f'{NAME} cannot be built on this machine: {names} missing; to get what is missing on '
         f'Debian and Ubuntu: sudo apt install {" ".join(packages)}{INSTEAD}'
@@ -58,7 +58,7 @@ def programs(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_without_a_compiler_colcon_says_one_sentence(folder, programs):
+def test_colcon_reports_a_missing_compiler_in_one_sentence(folder, programs):
     done = bash(folder, BUILD)
     assert done.returncode == 1
     sentence = lacking('gcc, g++, make and cmake are', 'build-essential', 'cmake')
@@ -73,20 +73,20 @@ def test_without_a_compiler_colcon_says_one_sentence(folder, programs):
     assert 'Summary: 1 package finished' in others.stdout, others.stdout
 
 
-def test_the_workspace_says_it_before_anybody_builds(folder, programs, capsys):
+def test_making_the_workspace_reports_missing_build_tools_before_a_build(folder, programs, capsys):
     workspace.main([])
     *_, last = capsys.readouterr().out.splitlines()
     assert last == lacking('gcc, g++, make and cmake are', 'build-essential', 'cmake')
 
 
-def test_what_is_there_is_not_asked_for(programs):
+def test_installed_build_tools_are_not_reported_as_missing(programs):
     programs('cc', 'c++', 'make')
     assert build_tools.why_not(NAME) == lacking('cmake is', 'cmake')
     programs('cmake')
     assert build_tools.why_not(NAME) == ''
 
 
-def test_a_compiler_of_another_name_counts_and_one_that_is_not_there_does_not(
+def test_a_compiler_with_an_alternative_name_counts_but_a_missing_one_does_not(
     programs, monkeypatch
 ):
     programs('clang', 'clang++', 'gmake', 'cmake')
@@ -95,21 +95,21 @@ def test_a_compiler_of_another_name_counts_and_one_that_is_not_there_does_not(
     assert build_tools.why_not(NAME) == lacking('gcc is', 'build-essential')
 
 
-def test_without_the_headers_of_python(programs, tmp_path, monkeypatch):
+def test_missing_python_headers_are_reported_with_their_package(programs, tmp_path, monkeypatch):
     programs('cc', 'c++', 'make', 'cmake')
     monkeypatch.setattr(sysconfig, 'get_path', lambda name: str(tmp_path / name))
     version = '{}.{}'.format(*sys.version_info)
     assert build_tools.why_not(NAME) == lacking(f'Python.h of Python {version} is', PYTHON_DEV)
 
 
-def test_a_package_that_is_not_installed_has_nothing_that_goes_on_working(programs):
+def test_no_installed_copy_is_promised_for_a_package_that_is_not_installed(programs):
     assert 'until then' not in build_tools.why_not('own_interfaces')
 
 
-# --- what the workspace is given -----------------------------------------------------------------
+# --- the interfaces in the workspace -------------------------------------------------------------
 
 
-def test_it_gets_what_colcon_builds_and_no_wheel(folder):
+def test_the_workspace_gets_the_sources_of_the_interfaces_but_no_wheel(folder):
     copied = folder / 'src' / NAME
     files = {str(path.relative_to(copied)) for path in copied.rglob('*') if path.is_file()}
     assert files == {'package.xml', 'CMakeLists.txt', 'srv/SolveIK.srv', 'action/MoveArm.action'}
@@ -117,14 +117,14 @@ def test_it_gets_what_colcon_builds_and_no_wheel(folder):
         assert (copied / file).read_bytes() == (ROOT / NAME / file).read_bytes()
 
 
-def test_a_notebook_gets_it_when_it_asks(folder, capsys):
+def test_make_workspace_copies_no_interfaces_by_default(folder, capsys):
     shutil.rmtree(folder / 'src')
     workspace.make_workspace()
     assert [path.name for path in (folder / 'src').iterdir()] == ['my_robot_basics']
     assert NAME not in capsys.readouterr().out
 
 
-def test_one_package_is_refreshed_and_the_other_kept(folder, capsys):
+def test_refreshing_one_package_leaves_the_nodes_package_unchanged(folder, capsys):
     definition, nodes = folder / f'src/{NAME}/srv/SolveIK.srv', folder / 'src/my_robot_basics'
     definition.write_text('mine')
     (nodes / 'setup.py').write_text('mine')
@@ -141,13 +141,13 @@ def test_the_cmake_files_of_ros_name_no_folder_of_another_machine():
     assert [file.name for file in exports if '/opt/python' in file.read_text()] == []
 
 
-# --- with one ------------------------------------------------------------------------------------
+# --- with a compiler -----------------------------------------------------------------------------
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(bool(build_tools.missing()), reason='there is no compiler, or no CMake')
-def test_what_colcon_has_built_meets_the_wheel(folder, capsys):
-    """One build, and all that it is for: it takes 15 s of both cores."""
+def test_interfaces_built_by_colcon_are_interchangeable_with_the_wheel(folder, capsys):
+    """One build serves all of these assertions: it takes 15 s of both cores."""
     built = bash(folder, BUILD)
     assert 'Summary: 1 package finished' in built.stdout, built.stdout
     assert 'stderr' not in built.stdout  # CMake had nothing to say
@@ -168,7 +168,7 @@ def test_what_colcon_has_built_meets_the_wheel(folder, capsys):
     assert shown.stdout.endswith(f'\n{install}\n')
     assert shown.stdout.startswith(own.read_text().splitlines()[0])
 
-    # each type goes to and fro with it, and a node that has it answers one that has the wheel
+    # each type makes a round trip, and a server with the wheel answers a client with the build
     imported = f'python -c "import {NAME}.srv; print({NAME}.__file__)"\n'
     program = f'python -P {ROOT / "tests/round_trip.py"}\n'
     with own_domain():
@@ -178,7 +178,7 @@ def test_what_colcon_has_built_meets_the_wheel(folder, capsys):
         request = "'{target: {x: 0.5, y: 0.3}}'"
         called = bash(
             folder,
-            # the server has the wheel, and the client what was built
+            # the server has the wheel, and the client the build
             f'python {NODES}/ik_service.py & server=$!\n{source}'
             f'timeout 60 ros2 service call /solve_ik {NAME}/srv/SolveIK {request}\n'
             'kill $server; wait $server 2>kill.txt\n',
@@ -186,7 +186,7 @@ def test_what_colcon_has_built_meets_the_wheel(folder, capsys):
         )
     assert 'reachable=True' in called.stdout, called.stdout
 
-    # a build that is not the newest says so
+    # a build that is older than its sources is reported
     capsys.readouterr()
     workspace.main([])
     assert f'{NAME} is built' in capsys.readouterr().out

@@ -31,7 +31,7 @@ def exchanged(came_in, day, content):
     write(folder / 'timestamp.txt', f'2026-01-0{day} 10:00:00.000000 UTC')
 
 
-def test_what_came_in_lies_where_it_is_graded(course, came_in):
+def test_collected_files_are_put_where_they_are_graded(course, came_in):
     write(came_in / f'ada_{TOY}.ipynb', 'ada’s')
     write(came_in / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
     write(came_in / f'bob/{TOY}/helper.py', 'x = 1')
@@ -55,7 +55,7 @@ def test_what_came_in_lies_where_it_is_graded(course, came_in):
     assert [each.problem for each in find_submissions(course)] == ['', '']
 
 
-def test_doing_it_again_changes_nothing(course, came_in):
+def test_collecting_again_changes_nothing(course, came_in):
     for day in (1, 2, 3):
         exchanged(came_in, day, f'version {day}')
     write(came_in / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
@@ -71,7 +71,7 @@ def test_doing_it_again_changes_nothing(course, came_in):
         assert tree(course.gradebook) == first
 
 
-def test_a_later_one_counts_and_the_earlier_is_kept_with_its_time(course, came_in):
+def test_a_later_submission_counts_and_the_earlier_one_is_kept_with_its_time(course, came_in):
     exchanged(came_in, 1, 'first')
     rows(course, came_in)
     exchanged(came_in, 2, 'second')
@@ -84,7 +84,9 @@ def test_a_later_one_counts_and_the_earlier_is_kept_with_its_time(course, came_i
     }
 
 
-def test_an_earlier_one_that_comes_late_is_kept_and_does_not_count(course, came_in, tmp_path):
+def test_an_earlier_submission_that_is_collected_late_is_kept_and_does_not_count(
+    course, came_in, tmp_path
+):
     exchanged(came_in, 2, 'second')
     rows(course, came_in)
     exchanged(tmp_path / 'mail', 1, 'first')
@@ -94,7 +96,7 @@ def test_an_earlier_one_that_comes_late_is_kept_and_does_not_count(course, came_
     assert list(rows(course, tmp_path / 'mail').values()) == [KNOWN]
 
 
-def test_without_times_what_comes_later_is_later(course, came_in):
+def test_submissions_without_times_count_in_the_order_of_collecting(course, came_in):
     for version in ('one', 'two'):
         write(came_in / f'ada_{TOY}.ipynb', version)
         rows(course, came_in)
@@ -105,7 +107,7 @@ def test_without_times_what_comes_later_is_later(course, came_in):
     assert submitted(course) == {NOTEBOOK: 'two'}
 
 
-def test_who_goes_back_to_a_former_version_later_is_graded_by_it(course, came_in):
+def test_a_former_version_that_is_submitted_again_later_is_graded(course, came_in):
     for day, content in ((1, 'good'), (2, 'bad'), (3, 'good')):
         exchanged(came_in, day, content)
         rows(course, came_in)
@@ -113,14 +115,14 @@ def test_who_goes_back_to_a_former_version_later_is_graded_by_it(course, came_in
     assert before(course)[f'2/submitted/{NOTEBOOK}'] == 'bad'
 
 
-def test_a_changed_helper_is_another_submission(course, came_in):
+def test_a_changed_helper_file_makes_a_new_submission(course, came_in):
     write(came_in / f'ada/{NOTEBOOK}', 'same')
     rows(course, came_in)
     write(came_in / 'ada/helper.py', 'x = 1')
     assert rows(course, came_in) == {f'ada/{NOTEBOOK}': AGAIN}
 
 
-def test_the_earlier_one_keeps_its_grade(course, came_in):
+def test_an_earlier_submission_keeps_its_grade(course, came_in):
     write(came_in / f'ada_{TOY}.ipynb', '')
     for answer, reasons in ((WRONG, {'double-check': 'expected 2, saw 1'}), (RIGHT, {})):
         notebook = answered(course, answer)
@@ -147,7 +149,7 @@ def test_the_earlier_one_keeps_its_grade(course, came_in):
 
 
 @pytest.mark.parametrize('survived', range(5))
-def test_a_run_that_ended_half_way_loses_nothing_and_goes_on(
+def test_collecting_again_after_an_interrupted_run_loses_nothing(
     survived, course, came_in, monkeypatch
 ):
     for day in (1, 2):
@@ -174,7 +176,7 @@ def test_a_run_that_ended_half_way_loses_nothing_and_goes_on(
     assert not list(course.gradebook.rglob('.new-*'))
 
 
-def test_nbgrader_reads_the_time(course, came_in):
+def test_nbgrader_reads_the_time_of_a_collected_submission(course, came_in):
     exchanged(came_in, 1, '{}')
     rows(course, came_in)
     folder = course.folder('submitted', 'ada', TOY)

@@ -13,7 +13,7 @@ from grader.common.errors import CourseError
 from grader.course import Course
 
 
-def test_the_command_prints_a_row_for_each_and_ends_with_1_where_one_was_not_taken(
+def test_collect_prints_rows_of_files_and_exits_with_1_if_one_was_not_taken(
     course, came_in, capsys
 ):
     write(came_in / f'小明_{TOY}.ipynb', 'x')
@@ -37,7 +37,7 @@ def test_the_command_prints_a_row_for_each_and_ends_with_1_where_one_was_not_tak
     assert out.splitlines()[-2:] == ['1 there already; 1 not taken.', 'Next: ./course grade']
 
 
-def test_nothing_that_is_there_to_collect_is_said(course, tmp_path, capsys):
+def test_a_missing_or_empty_folder_to_collect_is_reported(course, tmp_path, capsys):
     assert main(['collect', str(tmp_path / 'nowhere')], course=course) == 1
     assert 'nowhere is not there: expected a folder' in capsys.readouterr().err
     (tmp_path / 'empty').mkdir()
@@ -47,7 +47,7 @@ def test_nothing_that_is_there_to_collect_is_said(course, tmp_path, capsys):
     )
 
 
-def test_the_report_begins_with_a_line_whatever_it_tells(course, tmp_path, capsys):
+def test_a_report_of_unused_files_alone_begins_without_a_blank_line(course, tmp_path, capsys):
     (tmp_path / 'litter').mkdir()
     (tmp_path / 'litter' / '.DS_Store').write_text('')
     assert main(['collect', str(tmp_path / 'litter')], course=course) == 1
@@ -61,7 +61,7 @@ def test_the_report_begins_with_a_line_whatever_it_tells(course, tmp_path, capsy
 
 
 @pytest.mark.parametrize('place', ['.', '..', 'notebooks', 'notebooks/zh_CN', 'solutions'])
-def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, capsys):
+def test_the_lessons_of_the_course_are_refused_as_submissions(course, place, monkeypatch, capsys):
     came_in = course.root / place
     came_in.mkdir(exist_ok=True)
     monkeypatch.chdir(came_in)
@@ -71,7 +71,7 @@ def test_the_lessons_themselves_are_no_submissions(course, place, monkeypatch, c
     assert not course.folder('submitted', '', '').exists()
 
 
-def test_the_lessons_are_known_behind_a_link_and_a_folder_beside_them_is_collected(
+def test_lessons_are_recognized_behind_a_link_and_a_folder_beside_them_is_collected(
     course, tmp_path
 ):
     link = tmp_path / 'link'

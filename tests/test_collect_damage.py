@@ -1,4 +1,4 @@
-"""One upload stops nothing: what is damaged, hostile or in the way costs only itself."""
+"""A damaged or hostile upload, or one that is in the way, affects no other upload."""
 
 import gzip
 import os
@@ -18,7 +18,7 @@ from grader.common.errors import CourseError
 from grader.common.parsing import Limits
 
 
-def test_no_archive_writes_anywhere_else(course, came_in, tmp_path):
+def test_no_archive_writes_outside_of_the_gradebook(course, came_in, tmp_path):
     secret = tmp_path / 'secret'
     secret.write_text('secret')
     link = zipfile.ZipInfo(f'eve/{NOTEBOOK}')
@@ -39,7 +39,7 @@ def test_no_archive_writes_anywhere_else(course, came_in, tmp_path):
     assert tree(course.gradebook / 'submitted') == {f'zoe/{TOY}/{NOTEBOOK}': 'fine'}
 
 
-def test_a_file_that_is_in_the_way_costs_only_its_own_row(course, came_in):
+def test_a_file_in_the_way_of_one_submission_does_not_stop_others(course, came_in):
     write(course.gradebook / 'submitted/ada', 'a file')
     write(came_in / f'ada_{TOY}.ipynb', '')
     write(came_in / f'bob_{TOY}.ipynb', '')
@@ -47,7 +47,7 @@ def test_a_file_that_is_in_the_way_costs_only_its_own_row(course, came_in):
     assert (course.gradebook / 'submitted/ada').read_text() == 'a file'
 
 
-def test_a_full_disk_is_said_in_a_sentence(course, came_in, monkeypatch):
+def test_a_full_disk_is_reported_in_a_sentence(course, came_in, monkeypatch):
     def full(*_):
         raise OSError(28, 'No space left on device')
 
@@ -57,7 +57,7 @@ def test_a_full_disk_is_said_in_a_sentence(course, came_in, monkeypatch):
         rows(course, came_in)
 
 
-def test_a_hostile_time_costs_only_itself(course, came_in):
+def test_a_hostile_time_is_refused_and_the_submissions_are_taken(course, came_in):
     write(came_in / f'ada/{TOY}/{NOTEBOOK}', 'ada’s')
     write(came_in / f'ada/{TOY}/timestamp.txt', '1:99999999999999999999999999999.5')
     write(came_in / f'bob/{TOY}/{NOTEBOOK}', 'bob’s')
@@ -81,7 +81,9 @@ def a_tar_of_digits(path):
 
 
 @pytest.mark.slow
-def test_an_archive_that_takes_for_ever_costs_only_itself(course, came_in, monkeypatch):
+def test_an_archive_that_takes_too_long_does_not_stop_other_submissions(
+    course, came_in, monkeypatch
+):
     monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', Limits(cpu_sec=2))
     for place in (came_in, came_in / f'bob/{TOY}'):
         place.mkdir(parents=True, exist_ok=True)
@@ -95,7 +97,9 @@ def test_an_archive_that_takes_for_ever_costs_only_itself(course, came_in, monke
         assert 'over 2 s of processor time' in reason or 'named after no assignment' in reason
 
 
-def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, came_in, monkeypatch):
+def test_an_archive_that_takes_too_much_memory_does_not_stop_other_submissions(
+    course, came_in, monkeypatch
+):
     limits = Limits(memory_bytes=40_000_000)  # the reader itself does not fit in
     monkeypatch.setattr(uploads, 'LIMITS_OF_ONE', limits)
     with zipfile.ZipFile(came_in / 'mallory.zip', 'w') as box:
@@ -104,7 +108,7 @@ def test_an_archive_that_takes_too_much_memory_costs_only_itself(course, came_in
     assert rows(course, came_in) == {'mallory.zip': LEFT, f'ada_{TOY}.ipynb': NEW}
 
 
-def test_a_file_that_can_t_be_read_costs_only_itself(course, came_in, monkeypatch):
+def test_an_unreadable_file_does_not_stop_other_submissions(course, came_in, monkeypatch):
     """It may be on a damaged disk, or have been removed since the folder was listed."""
     for student in ('ada', 'bob', 'zoe'):
         write(came_in / f'{student}_{TOY}.ipynb', student)
@@ -142,7 +146,7 @@ def test_a_file_that_can_t_be_read_costs_only_itself(course, came_in, monkeypatc
     assert (row.outcome, row.reason) == (LEFT, 'it cannot be read: Input/output error')
 
 
-def test_thousands_of_broken_files_print_some_lines(course, came_in, capsys):
+def test_thousands_of_broken_files_are_reported_in_under_forty_lines(course, came_in, capsys):
     for student, name in (('mallory', '{}.ipynb'), ('eve', 'a_' + 'z' * 200 + '{}.ipynb')):
         with zipfile.ZipFile(came_in / f'{student}.zip', 'w') as box:
             for number in range(3_000):
@@ -161,8 +165,8 @@ def test_thousands_of_broken_files_print_some_lines(course, came_in, capsys):
     assert '1 new; 6009 not taken.' in out
 
 
-def test_large_files_of_a_submission_fill_no_memory(course, came_in):
-    """Each hand-in was held whole, and each earlier one beside it."""
+def test_large_files_are_collected_without_holding_them_in_memory(course, came_in):
+    """Neither a submission nor the earlier one beside it is in memory as a whole."""
     folder = came_in / f'ada/{TOY}'
     write(folder / NOTEBOOK, 'hers')
     for number in range(4):

@@ -21,7 +21,7 @@ def numbers(course):
     return json.loads((course.gradebook / 'numbers.json').read_text())
 
 
-def test_nobody_s_work_is_replaced_by_what_another_named_after_them(course, came_in):
+def test_a_file_that_names_a_different_student_cannot_replace_that_student_s_work(course, came_in):
     uploaded(came_in, 'Ada Lovelace', 1815, 'hers')
     rows(course, came_in)
     uploaded(came_in, 'Mallory Evil', 666, 'forged', '/Ada Lovelace')
@@ -33,7 +33,9 @@ def test_nobody_s_work_is_replaced_by_what_another_named_after_them(course, came
     assert [path.name for path in (course.gradebook / 'submitted').iterdir()] == ['Ada Lovelace']
 
 
-def test_moodle_s_number_is_kept_and_a_namesake_is_left_to_a_person(course, came_in, tmp_path):
+def test_moodle_numbers_are_kept_and_a_namesake_is_left_to_the_instructor(
+    course, came_in, tmp_path
+):
     uploaded(came_in, 'Ada Lovelace', 1815, 'hers')
     uploaded(came_in, '王小明', 7, 'his')
     assert set(rows(course, came_in).values()) == {NEW}
@@ -54,14 +56,14 @@ def test_moodle_s_number_is_kept_and_a_namesake_is_left_to_a_person(course, came
     assert numbers(course) == kept
 
 
-def test_two_downloads_that_disagree_on_a_number_are_both_left(course, came_in):
+def test_two_downloads_that_disagree_on_a_student_s_number_are_not_taken(course, came_in):
     for number, folder in ((1, 'monday'), (2, 'tuesday')):
         uploaded(came_in / folder, 'Ada Lovelace', number, folder)
     assert set(rows(course, came_in).values()) == {LEFT}
     assert not (course.gradebook / 'numbers.json').exists()
 
 
-def test_canvas_numbers_a_student_once(course, came_in):
+def test_canvas_submissions_are_matched_by_the_number_of_the_student(course, came_in):
     write(came_in / f'lovelaceada_18151_21012_{TOY}.ipynb', 'one')
     assert set(rows(course, came_in).values()) == {NEW}
     (came_in / f'lovelaceada_18151_21012_{TOY}.ipynb').unlink()
@@ -73,7 +75,7 @@ def test_canvas_numbers_a_student_once(course, came_in):
 
 
 @pytest.mark.parametrize('packed', [False, True])
-def test_a_class_s_folder_like_a_name_of_canvas_s_is_no_student(packed, course, came_in):
+def test_a_class_folder_that_looks_like_a_canvas_name_is_no_student(packed, course, came_in):
     folder = came_in / 'kurs_101_202'
     write(folder / 'ada' / NOTEBOOK, 'hers')
     write(folder / f'bob_{TOY}.ipynb', 'his')
@@ -85,7 +87,7 @@ def test_a_class_s_folder_like_a_name_of_canvas_s_is_no_student(packed, course, 
     assert not course.folder('submitted', 'kurs', TOY).exists()
 
 
-def test_blackboard_has_times_and_no_numbers(course, came_in):
+def test_blackboard_submissions_are_ordered_by_time_without_numbers(course, came_in):
     attempt = f'Lab 1_{{}}_attempt_2026-01-0{{}}-10-00-00_{TOY}.ipynb'
     write(came_in / attempt.format('ada', 2), 'first')
     write(came_in / attempt.format('ada', 3), 'second')
@@ -100,20 +102,20 @@ def test_blackboard_has_times_and_no_numbers(course, came_in):
 
 
 @pytest.mark.parametrize('damage', ['{', '[]', '{"ada": 1}', '{"ada": {"x": {"moodle": 1}}}'])
-def test_damaged_numbers_are_said_in_a_sentence(damage, course, came_in):
+def test_a_damaged_file_of_numbers_is_reported_in_a_sentence(damage, course, came_in):
     write(course.gradebook / 'numbers.json', damage)
     uploaded(came_in, 'Ada', 1, '')
     with pytest.raises(CourseError, match='is damaged: restore it from a backup, or remove it'):
         rows(course, came_in)
 
 
-def test_a_folder_of_their_own_is_told_beside_what_was_taken(course, came_in):
+def test_a_folder_inside_an_upload_is_mentioned_beside_the_taken_file(course, came_in):
     uploaded(came_in, 'Ada', 1, '', '/turtles')
     (row,) = collect(course, came_in)
     assert (row.outcome, row.reason) == (NEW, "from a folder of their own, 'turtles'")
 
 
-def test_other_spellings_of_a_student_are_told(course, came_in):
+def test_different_spellings_of_a_student_s_name_are_reported(course, came_in):
     for name in 'Ada Lovelace', 'ADA_lovelace', 'Ada_Lovelace':
         write(course.folder('submitted', name, '99_other') / '99_other.ipynb', '{}')
     write(came_in / f'ada_lovelace_{TOY}.ipynb', nbformat.writes(course.release(TOY)))

@@ -1,4 +1,4 @@
-"""Packages come in with their notebook, however they were packed, and nothing else does."""
+"""Packages are collected with their notebook, however they were packed, and nothing else is."""
 
 import io
 import os
@@ -32,7 +32,7 @@ def course(tmp_path):
 
 @pytest.fixture
 def work(tmp_path):
-    """What a student has: the lesson's folder, with the package in it."""
+    """A student's folder of the lesson, with the package in it."""
     folder = tmp_path / 'work'
     make_package(folder)
     (folder / NOTEBOOK).write_text('{}')
@@ -119,7 +119,7 @@ def exchange(work, came_in):
         *(canvas_with_two_uploads, exchange),
     ],
 )
-def test_a_package_comes_in_with_its_notebook(course, work, came_in, pack):
+def test_a_package_is_collected_with_its_notebook(course, work, came_in, pack):
     pack(work, came_in)
     said = rows(course, came_in)
     [student] = os.listdir(course.gradebook / 'submitted')
@@ -128,7 +128,7 @@ def test_a_package_comes_in_with_its_notebook(course, work, came_in, pack):
     assert {*read(course, student).files} == FILES
 
 
-def test_a_changed_file_of_a_package_is_a_new_hand_in(course, work, came_in):
+def test_a_changed_file_of_a_package_makes_a_new_submission(course, work, came_in):
     folder_of_a_student(work, came_in)
     rows(course, came_in)
     path = f'ada/{LESSON}/{NOTEBOOK}'
@@ -148,7 +148,7 @@ def test_another_students_package_is_not_taken(course, work, came_in):
     assert len(left) == len(FILES)
 
 
-def test_what_is_left_out_is_told_to_both(course, work, came_in):
+def test_student_and_instructor_read_which_files_are_left_out(course, work, came_in):
     package = work / PACKAGE
     for name in ('build/a.py', '__pycache__/a.pyc', '.git/config', 'x<y>.py'):
         (package / name).parent.mkdir(exist_ok=True)
@@ -168,7 +168,7 @@ def test_what_is_left_out_is_told_to_both(course, work, came_in):
     assert rows(course, came_in)[f'ada/{LESSON}/{NOTEBOOK}'][0] == KNOWN
 
 
-def test_ten_thousand_files_cost_the_package_and_not_the_notebook(course, work, came_in):
+def test_a_package_with_too_many_files_is_left_out_and_the_notebook_is_kept(course, work, came_in):
     with zipfile.ZipFile(zipped(work, came_in / 'ada.zip'), 'a') as box:
         for number in range(4_000):
             box.writestr(f'{PACKAGE}/data/{number}', '')
@@ -179,7 +179,7 @@ def test_ten_thousand_files_cost_the_package_and_not_the_notebook(course, work, 
     assert 'most are in data/' in note
 
 
-def test_an_archive_chooses_no_place(course, work, came_in):
+def test_an_archive_cannot_place_files_outside_of_its_package(course, work, came_in):
     with zipfile.ZipFile(zipped(work, came_in / 'ada.zip'), 'a') as box:
         box.writestr(f'{PACKAGE}/../../../evil.py', 'x')
         box.writestr(f'/{PACKAGE}/evil.py', 'x')
@@ -205,21 +205,21 @@ def zip_of(name):
     return packed.getvalue()
 
 
-def test_a_notebook_in_a_package_is_no_hand_in(course, work, came_in):
+def test_a_notebook_inside_a_package_is_not_taken_for_a_submission(course, work, came_in):
     shutil.copy(work / NOTEBOOK, work / PACKAGE / NOTEBOOK)
     folder_of_a_student(work, came_in)
     rows(course, came_in)
     assert submitted(course, 'ada') == {NOTEBOOK, f'{PACKAGE}/{NOTEBOOK}', *FILES}
 
 
-def test_a_package_without_a_notebook_is_left_to_a_person(course, work, came_in):
+def test_a_package_without_a_notebook_is_left_to_the_instructor(course, work, came_in):
     zipped(work / PACKAGE, came_in / 'ada' / f'{PACKAGE}.zip', within=f'{PACKAGE}/')
     said = rows(course, came_in)
     assert len(said) == len(FILES)
     assert {outcome for outcome, _ in said.values()} <= {LEFT, UNUSED}
 
 
-def test_a_note_that_a_student_forged_moves_no_cursor(course, work):
+def test_a_forged_note_is_shortened_and_has_no_control_characters(course, work):
     place = course.folder('submitted', 'ada', LESSON)
     shutil.copytree(work, place)
     (place / LEFT_OUT).write_bytes(b'\x1b[2J' + b'x' * 20_000)
