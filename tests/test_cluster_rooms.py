@@ -17,7 +17,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.isolation, pytest.mark.timeout(900)]
 
 SLOWLY = 'import time\n\ntime.sleep(2)\n\n\ndef double(x):\n    return {} * x'
 CLASS = {'ada': 2, 'bob': 3, 'eve': 2, 'kim': 3, 'zoe': 2}
-"""What each multiplies by: two of them wrongly."""
+"""The factor that each student multiplies by: two of them are wrong."""
 GRADE = (
     'import sys; from pathlib import Path; from grader.course import Course; '
     'from grader.__main__ import main; '
@@ -59,7 +59,7 @@ def until_one_is_stored(run):
     assert any(line.startswith('ada') for line in iter(run.stdout.readline, '')), run.communicate()
 
 
-def test_a_class_goes_on_where_a_scheduler_was_killed(tmp_path, start):
+def test_grading_resumes_after_a_scheduler_was_killed_with_the_same_scores(tmp_path, start):
     scheduler, _ = start_cluster(start)
     there = handed_in(tmp_path / 'there')
     run = grade(there, '--dask', scheduler.address)

@@ -1,4 +1,4 @@
-"""What a command imports too early; unlike times, this does not depend on the machine."""
+"""Commands import no heavy module early; unlike times, this does not depend on the machine."""
 
 import json
 import subprocess
@@ -22,14 +22,14 @@ HEAVY = {
 }
 """Packages of which each takes 10 ms and more, or brings another one of them."""
 SLOW_TO_START = {'asyncio', 'dataclasses', 'inspect', 'logging', 'subprocess', 'tempfile'}
-"""Of the standard library, what takes 5 ms and more."""
+"""Modules of the standard library of which each takes 5 ms and more."""
 OF_THE_LAUNCHER = SLOW_TO_START | {'hashlib', 'pathlib', 'typing'}
 """The launcher runs twice for each verb, so it has less time: a Python alone takes 11 ms."""
 OF_A_RUN = {
     *('IPython', 'alembic', 'babel', 'bleach', 'bs4', 'dask', 'distributed', 'jupyter_client'),
     *('jupyter_server', 'matplotlib', 'nbclient', 'nbconvert', 'numpy', 'rclpy', 'zmq'),
 }
-"""What of HEAVY a run needs no more where nothing is new: kernels and conversions."""
+"""Packages of HEAVY for kernels and conversions: a run without new submissions needs none."""
 PROGRAM = """
 import json, sys
 before = set(sys.modules)
@@ -62,7 +62,7 @@ def imported(do, *options):
 
 
 @pytest.mark.parametrize('arguments', ASKED.values(), ids=ASKED)
-def test_arguments_are_read_with_none_of_what_grades(arguments):
+def test_reading_arguments_imports_no_heavy_module(arguments):
     found = imported(f'from grader.__main__ import main; main({arguments!r})')
     assert 'grader' in found
     assert found & (HEAVY | SLOW_TO_START) == set()
@@ -76,14 +76,14 @@ def test_arguments_are_read_with_none_of_what_grades(arguments):
         'the way to a verb': 'from launcher.main import main; main(["--ready", "grade"])',
     }.values(),
 )
-def test_the_launcher_imports_little(do):
+def test_the_launcher_imports_no_slow_module(do):
     instead = 'import os; os.execve = lambda *_: sys.exit(); '
     found = imported(f'sys.path.append({str(ROOT)!r}); {instead}{do}', '-IS')
     assert 'launcher' in found
     assert found & OF_THE_LAUNCHER == set()
 
 
-def test_a_run_without_anything_new_imports_no_kernels_and_makes_no_lesson_anew(tmp_path, capsys):
+def test_a_run_without_new_submissions_imports_no_kernels_and_rebuilds_no_lesson(tmp_path, capsys):
     course = released_course(tmp_path)
     submit(course, 'ada', b'')  # nothing that could be run
     assert main(['grade'], course=course) == 0

@@ -43,22 +43,22 @@ def test_each_file_is_in_one_shard(parts):
 
 
 @pytest.mark.parametrize('shard', ['0/2', '3/2', '1', '/', 'one/2'])
-def test_what_is_no_shard_is_refused(shard):
+def test_an_invalid_shard_is_refused(shard):
     with pytest.raises(pytest.UsageError, match='expected K/N'):
         tiers.keep_shard([], shard)
 
 
-def test_the_files_that_start_something_are_there():
+def test_each_file_in_the_list_of_starting_files_exists():
     assert {f'test_{name}' for name in tiers.STARTING_FILES} - FILES.keys() == set()
 
 
-def test_the_files_that_come_first_are_there():
+def test_each_file_in_the_list_of_long_files_exists_and_is_listed_once():
     assert {f'test_{name}' for name in LONG} - FILES.keys() == set()
     assert len(set(LONG)) == len(LONG)
 
 
 @pytest.mark.parametrize('row', ordinary.ORDINARY)
-def test_a_row_of_what_an_ordinary_run_takes_names_a_test(row):
+def test_each_row_of_the_ordinary_run_names_an_existing_test(row):
     file, _, name = row.partition('::')
     assert f'def {name}(' in FILES[file].read_text(encoding='utf-8')
 
@@ -77,7 +77,7 @@ def test_a_row_of_what_an_ordinary_run_takes_names_a_test(row):
     ],
     ids=['kernel', 'ros2', 'sandbox', 'browser', 'process', 'spawned', 'fork', 'node'],
 )
-def test_a_quick_test_starts_nothing(start, monkeypatch, request):
+def test_a_quick_test_that_starts_a_process_or_a_node_is_refused(start, monkeypatch, request):
     guard = request.config.stash[GUARD]
     monkeypatch.setattr(guard, 'refuses', True)
     with pytest.raises(RuntimeError, match='is not marked as a test that starts'):
@@ -86,7 +86,9 @@ def test_a_quick_test_starts_nothing(start, monkeypatch, request):
         guard.end()
 
 
-def test_a_test_without_the_mark_fails_in_an_ordinary_run_too(monkeypatch, request):
+def test_a_test_that_starts_a_process_without_the_mark_fails_in_an_ordinary_run(
+    monkeypatch, request
+):
     guard = request.config.stash[GUARD]
     monkeypatch.setattr(guard, 'refuses', False)
     subprocess.run(COMMAND, stdin=subprocess.DEVNULL)  # reads what students wrote: any test may

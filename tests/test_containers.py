@@ -21,7 +21,7 @@ PYTHON_OF_DEBIAN = {'12': '3.11', '13': '3.13'}
 
 
 def instructions(text=TEXT):
-    """Return (instruction, what follows) for each, as a builder joins the lines."""
+    """Return (instruction, the rest of its line) for each, with continued lines joined."""
     lines = [line for line in text.splitlines() if line and not line.startswith('#')]
     joined = '\n'.join(lines).replace('\\\n', '')
     return [tuple(line.split(maxsplit=1)) for line in joined.splitlines()]
@@ -46,7 +46,7 @@ def test_each_command_is_a_verb_that_students_have():
     assert {verbs[name].owner for name in named} == {'everyone'}
 
 
-def test_each_starts_jupyterlab_without_a_browser_on_the_port_that_is_open():
+def test_each_container_starts_jupyterlab_without_a_browser_on_the_open_port():
     ports = {
         option.removeprefix('--port=')
         for command in commands()
@@ -62,20 +62,20 @@ def test_each_starts_jupyterlab_without_a_browser_on_the_port_that_is_open():
     assert '--ip=0.0.0.0' in labs[0]  # else nobody outside of the container reaches it
 
 
-def test_its_python_is_one_that_the_pins_are_for():
+def test_the_python_of_the_image_is_one_that_the_pins_are_for():
     ((release,),) = [re.findall(r'^debian:(\d+)-slim AS system$', line) for line in of('FROM')[:1]]
     assert PYTHON_OF_DEBIAN[release] in PYTHONS
     assert 'python3-venv' in of('RUN')[0].split()
 
 
-def test_what_is_installed_is_pinned_by_the_file_that_the_bundle_has():
-    """No command names a package of Python's: environment.txt does, with its hashes."""
+def test_the_image_installs_packages_only_by_the_pinned_environment_file():
+    """No command names a Python package: environment.txt does, with its hashes."""
     assert {'course', 'environment.txt'} < set(AS_THEY_ARE)
     assert not re.search(r'\b(pip|uv)\b', TEXT)
     assert f'-f Containerfile {FOLDER}' in DOCUMENT
 
 
-def test_nobody_is_root_and_answers_stay_outside():
+def test_the_container_runs_as_student_and_copies_only_the_course():
     assert of('USER') == ['student'] == [DEVCONTAINER['remoteUser']]
     order = [kind for kind, _ in instructions()]
     assert order.index('USER') < order.index('COPY') < order.index('CMD')
@@ -83,7 +83,7 @@ def test_nobody_is_root_and_answers_stay_outside():
     assert of('COPY') == ['--chown=student:student . /course']
 
 
-def test_the_development_container_builds_a_stage_that_there_is():
+def test_the_development_container_builds_an_existing_stage():
     build = DEVCONTAINER['build']
     assert (ROOT / '.devcontainer' / build['dockerfile']).resolve() == ROOT / 'Containerfile'
     stages = re.findall(r'^FROM \S+ AS (\w+)$', TEXT, re.MULTILINE)
@@ -92,15 +92,15 @@ def test_the_development_container_builds_a_stage_that_there_is():
 
 
 @pytest.mark.parametrize('option', ['seccomp', 'systempaths', 'apparmor'])
-def test_the_document_names_each_option_once_and_no_wider_one(option):
+def test_the_document_names_each_security_option_once_and_no_wider_one(option):
     (line,) = re.findall(r'^docker run .*?…$', DOCUMENT, re.MULTILINE | re.DOTALL)
     assert line.count(f'--security-opt {option}=') == 1
     assert '--privileged' not in line
     assert 'seccomp=unconfined' not in line
 
 
-def test_the_service_is_what_the_recipe_says_and_gets_cgroups_for_its_rooms():
-    """Of the machine that grades: where the recipe puts the course, and where a hub hands in."""
+def test_the_service_file_agrees_with_the_recipe_and_delegates_cgroups():
+    """Its folders are those of the recipe and of the hub's exchange."""
     unit = configparser.ConfigParser()
     unit.optionxform = str
     unit.read_string((ROOT / 'docs/serve.service').read_text())

@@ -54,7 +54,7 @@ def test_the_row_of_a_platform_reads_its_names(monkeypatch):
     assert platforms.student_in(name) == 'Ada Lovelace'
 
 
-def test_the_example_lesson_has_the_number_of_no_other():
+def test_the_example_lesson_has_a_number_that_no_existing_lesson_has():
     (number,) = set(re.findall(r'\b(\d\d)_example\b', PAGE))
     lessons = {path.parent.name for path in ROOT.glob('solutions/*/*.ipynb')}
     assert '08_services' in lessons

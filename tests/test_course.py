@@ -44,7 +44,7 @@ TERMINAL = 'my_robot_basics/my_robot_basics/ros2/terminal.bash'
 
 
 @pytest.mark.parametrize('script', ['course', 'launcher/words.sh', '.ci/run', TERMINAL])
-def test_shellcheck_finds_nothing(script):
+def test_shellcheck_finds_no_fault_in_a_script(script):
     shellcheck = Path(sys.prefix, 'bin/shellcheck')
     run = subprocess.run(
         [shellcheck, '--external-sources', ROOT / script], cwd=ROOT, capture_output=True, text=True
@@ -52,13 +52,13 @@ def test_shellcheck_finds_nothing(script):
     assert (run.returncode, run.stdout) == (0, '')
 
 
-def test_what_runs_before_there_is_a_python_is_short():
-    """What can be Python is tested as such."""
+def test_the_shell_script_that_runs_before_python_is_short():
+    """Everything that can be written in Python is Python, and is tested as such."""
     assert len((ROOT / 'course').read_text(encoding='utf-8').splitlines()) <= 120
 
 
 @pytest.mark.parametrize('shell', ['dash', 'bash --posix', 'busybox sh'])
-def test_works_under_any_posix_shell(machine, shell):
+def test_the_course_script_works_under_any_posix_shell(machine, shell):
     program, *options = shell.split()
     if not (path := shutil.which(program)):
         pytest.skip(f'{program} is not installed')
@@ -77,7 +77,7 @@ def test_help_has_a_line_for_each_verb(bare, asked):
     assert 'grade [ASSIGNMENT] [--student ID]' in run.stdout
 
 
-def test_without_a_verb_the_verbs_are_listed(bare):
+def test_a_call_without_a_verb_lists_the_verbs(bare):
     run = bare.course()
     assert run.returncode == 2
     assert run.stderr == bare.course('--help').stdout
@@ -90,10 +90,10 @@ def test_an_unknown_verb_is_named_and_sets_nothing_up(machine):
     assert not (machine.root / '.venv').exists()
 
 
-# --- what it starts ------------------------------------------------------------------------------
+# --- what a verb starts --------------------------------------------------------------------------
 
 
-def test_other_environments_stay_outside(machine):
+def test_variables_of_other_ros_environments_are_not_passed_on(machine):
     ros, workspace, venv = '/opt/ros/jazzy', '/home/ada/ros ws/install', machine.root / '.venv'
     run = machine.course(
         'scores',
@@ -140,7 +140,7 @@ def test_lab_serves_the_lessons_alone(machine):
     assert folder == f'{machine.root}/notebooks'
 
 
-def test_lab_shows_a_workspace_that_is_there_in_its_file_browser(machine):
+def test_lab_links_an_existing_workspace_into_its_file_browser(machine):
     link = machine.root / 'notebooks/ros_ws'
     assert machine.course('lab').returncode == 0
     assert not link.is_symlink()
@@ -160,12 +160,12 @@ def test_lab_shows_a_workspace_that_is_there_in_its_file_browser(machine):
     assert link.read_text() == 'mine'
 
 
-def test_what_lab_starts_is_on_this_machine_alone(machine):
+def test_lab_limits_the_discovery_of_nodes_to_this_machine(machine):
     run = machine.course('lab', PRINT_ENVIRONMENT='yes')
     assert 'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST' in run.stdout.splitlines()
 
 
-def test_a_path_to_collect_is_the_caller_s(machine):
+def test_a_path_to_collect_is_relative_to_the_caller_s_folder(machine):
     assert machine.course('collect', 'class.zip').returncode == 0
     assert machine.calls()[-2:] == ['python -P -m grader collect class.zip', '/']
 
@@ -178,7 +178,9 @@ def test_a_path_to_collect_is_the_caller_s(machine):
         ('validate', 'validate', '/'),
     ],
 )
-def test_workspace_and_shell_are_the_packages(machine, verb, module, folder):
+def test_workspace_shell_and_validate_run_modules_of_the_students_package(
+    machine, verb, module, folder
+):
     run = machine.course(verb, '-c', 'two words')
     assert run.returncode == 0, run.stderr
     assert machine.calls()[-2:] == [
@@ -210,7 +212,7 @@ def test_lab_opens_the_lessons_in_the_language_of_its_user(machine, asked, local
     assert '--language' not in command
 
 
-def test_a_language_without_lessons_is_named_with_those_there_are(machine):
+def test_a_language_without_lessons_is_reported_with_the_available_languages(machine):
     machine.course('scores')
     said = the_one_sentence(machine.course('lab', '--language', 'tlh'))
     assert "there are no lessons in 'tlh': --language takes en" in said
@@ -231,7 +233,7 @@ def bundle(machine):
     return machine
 
 
-def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
+def test_the_help_of_a_bundle_lists_only_the_verbs_of_students(bundle):
     run = bundle.course('--help')
     assert (run.returncode, run.stderr) == (0, '')
     verbs = [line.split()[0] for line in run.stdout.splitlines() if line.startswith('  ')]
@@ -239,13 +241,13 @@ def test_in_a_bundle_help_lists_what_a_student_can_do(bundle):
 
 
 @pytest.mark.parametrize('verb', VERBS[7:])
-def test_in_a_bundle_an_instructors_verb_says_so_and_sets_nothing_up(bundle, verb):
+def test_an_instructors_verb_in_a_bundle_is_refused_without_setting_up(bundle, verb):
     sentence = the_one_sentence(bundle.course(verb))
     assert sentence.startswith(f"'{verb}' is for instructors and needs the whole course")
     assert not (bundle.root / '.venv').exists()
 
 
-def test_in_a_bundle_only_the_students_package_is_installed(bundle):
+def test_a_bundle_installs_the_students_package_and_no_grader(bundle):
     assert bundle.course('lab').returncode == 0
     (*_, installed) = bundle.calls('uv pip install')
     wheel = './arm_interfaces/wheel/arm_interfaces-0.1.0-cp311-abi3-manylinux_2_28_x86_64.whl'
@@ -255,7 +257,7 @@ def test_in_a_bundle_only_the_students_package_is_installed(bundle):
 
 @pytest.mark.starts
 @pytest.mark.parametrize('name', ['ros2', 'topic_doctor'])
-def test_the_tools_are_those_of_the_installed_package_wherever_it_lies(bundle, name):
+def test_ros2_and_topic_doctor_start_the_tools_of_the_installed_package(bundle, name):
     tools = bundle.root / 'my_robot_basics/my_robot_basics/ros2'
     tools.mkdir()
     (tools / 'start.py').touch()

@@ -22,7 +22,7 @@ def machine(bare):
 
 
 def checks(machine, *arguments, ruff=0, mypy=0, pytest=0, again=None):
-    """Run ./course test with checks that end so; return its exit code and its calls of pytest."""
+    """Run ./course test with checks that end with these codes; return its code and pytest runs."""
     again = pytest if again is None else again
     machine.course('scores')
     bin_folder = machine.root / '.venv/bin'
@@ -50,26 +50,26 @@ def checks(machine, *arguments, ruff=0, mypy=0, pytest=0, again=None):
         (1, 2, 3, 3),
     ],
 )
-def test_test_ends_with_the_last_failure(machine, ruff, mypy, pytest, code):
+def test_course_test_exits_with_the_code_of_the_last_failure(machine, ruff, mypy, pytest, code):
     seen, calls = checks(machine, ruff=ruff, mypy=mypy, pytest=pytest)
     assert seen == code
     assert len(calls) == (2 if pytest == 1 else 1)
 
 
 @pytest.mark.parametrize('again', [0, 1, 5])
-def test_what_failed_beside_other_tests_is_judged_alone(machine, again):
+def test_a_failed_test_is_run_again_alone_and_that_run_decides(machine, again):
     seen, calls = checks(machine, '-k', 'a name', pytest=1, again=again)
     assert seen == again
     assert '-k a name --last-failed -n 0' in calls[-1]
 
 
-def test_test_passes_arguments_on(machine):
+def test_course_test_passes_its_arguments_to_pytest(machine):
     _, [call] = checks(machine, '--slow', '-k', 'a name')
     assert call.endswith(' --slow -k a name')
 
 
 @pytest.mark.parametrize('again', [0, 1, 5])
-def test_a_lesson_that_differed_beside_others_is_judged_alone_and_whole(machine, again):
+def test_a_lesson_that_differed_is_replayed_alone_and_as_a_whole(machine, again):
     for name in ('00_lesson', '01_lesson'):
         lesson = machine.root / f'solutions/{name}/{name}.ipynb'
         lesson.parent.mkdir(parents=True)
@@ -91,7 +91,7 @@ def test_a_lesson_that_differed_beside_others_is_judged_alone_and_whole(machine,
     assert machine.calls('python')[-1].endswith(' -v -n 0 solutions/01_lesson/01_lesson.ipynb')
 
 
-def test_test_replays_the_lessons_when_it_checks_everything(machine):
+def test_course_test_replays_the_lessons_unless_files_are_named(machine):
     lesson = machine.root / 'solutions/00_lesson/00_lesson.ipynb'
     lesson.parent.mkdir(parents=True)
     lesson.touch()
@@ -101,7 +101,7 @@ def test_test_replays_the_lessons_when_it_checks_everything(machine):
 
 
 @pytest.mark.parametrize('code', [0, 1, 5])
-def test_ci_gets_what_is_missing_and_ends_as_the_tests_do(bare, code):
+def test_ci_installs_missing_programs_and_exits_with_the_code_of_the_tests(bare, code):
     (bare.root / '.ci').mkdir()
     run_script = Path(shutil.copy(ROOT / '.ci/run', bare.root / '.ci/run'))
     (bare.root / 'course').write_text(f'#!/bin/sh\necho "course $*" >>"$CALLS"\nexit {code}\n')

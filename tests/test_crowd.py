@@ -58,7 +58,7 @@ def crowd():
     # twenty students with two notebooks each
     [6, pytest.param(40, marks=[pytest.mark.slow, pytest.mark.timeout(600)])],
 )
-def test_lessons_side_by_side_do_not_hear_each_other(crowd, monkeypatch, size):
+def test_lessons_side_by_side_do_not_receive_each_other_s_messages(crowd, monkeypatch, size):
     monkeypatch.delenv('MY_ROBOT_BASICS_DOMAIN_ID', raising=False)
     lessons = crowd(size)
     domains = [json.loads(lesson.stdout.readline()) for lesson in lessons]

@@ -41,7 +41,7 @@ def moved(home: Path, deep: Path) -> list[str]:
     deep.mkdir(parents=True)
     options = ['--ro-bind', str(ROOT), str(deep)]
     packages = Path(sysconfig.get_path('purelib')).relative_to(ROOT)
-    # what an installation writes down of the place where it is made
+    # files in which an installation writes the path of its folder
     for path in (*(ROOT / packages).glob('__editable__*.pth'), Path(sys.prefix, 'bin/alembic')):
         own = home / path.name
         own.write_text(path.read_text().replace(str(ROOT), str(deep)))

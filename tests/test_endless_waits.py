@@ -33,7 +33,7 @@ WAITS = {
 
 
 @pytest.mark.parametrize('wait', WAITS)
-def test_a_timer_is_called(wait):
+def test_each_way_to_wait_calls_a_timer_and_ends(wait):
     program = f'{PROGRAM}{WAITS[wait]}\nprint("ended", flush=True)\nrclpy.try_shutdown()\n'
     command = [sys.executable, '-P', '-c', program]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60)

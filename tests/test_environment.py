@@ -72,7 +72,7 @@ def test_students_need_no_tools_of_the_developers():
     assert {'jupyterlab', 'ros-jazzy-rclpy', 'colcon-core'} <= needed.keys()
 
 
-def test_header_names_the_command_that_makes_the_file():
+def test_the_header_of_environment_txt_names_the_command_that_makes_the_file():
     header = ' '.join(line for line in LINES if line.startswith('#'))
     assert 'uv pip compile' in header
     assert '.ci/pin.py' in header
@@ -90,7 +90,7 @@ def test_every_direct_requirement_is_pinned_and_in_its_range():
     assert wrong == []
 
 
-def test_this_environment_is_the_pinned_one():
+def test_the_installed_packages_are_exactly_the_pinned_ones():
     ours = {'my-robot-basics', 'my-robot-basics-grader', 'arm-interfaces'}
     installed = {
         canonicalize_name(d.name): f'=={d.version}'
@@ -153,13 +153,13 @@ def venv(tmp_path):
 
 
 @pytest.mark.starts
-def test_this_python_is_a_supported_one(found):
+def test_the_running_python_is_a_supported_one(found):
     assert THIS in found.keys() & set(PYTHONS)
 
 
 @pytest.mark.slow  # a session runs in what was installed; for the others, the resolver has to do
 @pytest.mark.parametrize('version', PYTHONS)
-def test_installs_on_each_python_that_is_here(version, found, venv):
+def test_the_pins_install_on_each_python_of_this_machine(version, found, venv):
     if version not in found:
         pytest.skip(f'this machine has no Python {version} to install on')
     python = venv / 'bin/python'

@@ -10,7 +10,7 @@ import pytest
 from my_robot_basics import checks, live
 
 LIBRARIES = 'logging, concurrent.futures.thread, rclpy, std_msgs.msg, matplotlib, IPython.display'
-"""What ours are made with may register functions for Python's end when it is imported."""
+"""Libraries that may register functions for the end of Python when they are imported."""
 PROGRAM = """
 import atexit, json, os, sys, threading
 import {libraries}
@@ -59,12 +59,12 @@ def states(imports):
 
 
 @pytest.mark.parametrize('imports', IMPORTS.values(), ids=IMPORTS)
-def test_an_import_changes_nothing(imports):
+def test_an_import_changes_nothing_in_the_process(imports):
     before, after = states(imports)
     assert after == before
 
 
-def test_setting_up_does():
+def test_setting_up_changes_the_environment_sockets_and_hooks():
     before, after = states(SETTING_UP)
     assert {key for key in before if before[key] != after[key]} >= {
         'environment',

@@ -1,4 +1,4 @@
-"""What `./course` does before anything is installed: its verbs, the environment, the installer."""
+"""The launcher, before anything is installed: its verbs, the environment, the installer."""
 
 import os
 import re
@@ -20,7 +20,7 @@ from launcher.shares import executables_of
 from launcher.verbs import read_verbs
 
 
-def test_a_row_is_what_help_and_dispatch_are_made_from():
+def test_a_row_of_the_table_of_verbs_has_owner_module_folder_and_help():
     verbs = read_verbs()
     grade = verbs['grade']
     assert (grade.owner, grade.runs, grade.folder) == ('course', 'grader grade', 'root')
@@ -39,14 +39,14 @@ def test_the_grader_has_the_verbs_that_the_table_says_it_has():
 @pytest.mark.parametrize(
     'row', ['nobody|launcher.lab|root|lab  open', 'everyone|launcher.lab|home|lab  open']
 )
-def test_a_wrong_row_is_refused(row, tmp_path):
+def test_a_wrong_row_in_the_table_of_verbs_is_refused(row, tmp_path):
     table = tmp_path / 'verbs.txt'
     table.write_text(f'# the verbs\n{row}\n')
     with pytest.raises(ValueError, match=re.escape(row)):
         read_verbs(table)
 
 
-def test_a_new_verb_is_one_row(tmp_path):
+def test_a_new_verb_needs_only_one_row_in_the_table_of_verbs(tmp_path):
     shutil.copy(ROOT / 'course', tmp_path)
     shutil.copytree(ROOT / 'launcher', tmp_path / 'launcher')
     with (tmp_path / 'launcher/verbs.txt').open('a') as table:
@@ -56,7 +56,7 @@ def test_a_new_verb_is_one_row(tmp_path):
     assert read_verbs(tmp_path / 'launcher/verbs.txt')['wave'].help == 'say hello'
 
 
-def test_it_needs_nothing_that_is_installed():
+def test_the_launcher_imports_only_the_standard_library():
     code = (
         f'import sys; sys.path.append({str(ROOT)!r})\n'
         'from launcher import lab, main, testing\n'
@@ -82,7 +82,7 @@ def test_folders_of_other_environments_are_left_out(folders, kept):
     assert without_foreign(folders, {'/opt/ros', '/home/ada/ros ws'}) == kept
 
 
-def test_what_the_caller_asked_of_his_workspace_stays():
+def test_a_workspace_chosen_by_the_caller_is_kept_in_the_environment():
     environment = Environment(Path('/course'))
     inside = environment.variables({'PATH': '/bin', 'MY_ROBOT_BASICS_WORKSPACE': '/mine'})
     assert inside['ROS_WS'] == '/mine'
@@ -105,7 +105,7 @@ def test_a_verb_gets_the_libraries_of_ros_and_starts_once(monkeypatch):
     assert sorted(folders) == sorted(ros_wheels_bootstrapper.get_ros_paths().split(':'))
 
 
-def test_a_new_venv_s_python_looks_for_the_libraries_itself(monkeypatch):
+def test_the_python_of_a_new_venv_looks_for_the_libraries_of_ros_itself(monkeypatch):
     run = []
     monkeypatch.setattr(os, 'execve', lambda *arguments: run.append(arguments))
     # the launcher's Python, which may have another version than that of .venv
@@ -127,12 +127,12 @@ def test_the_steps_of_an_installer_are_shown(line, step):
     assert progress(line) == step
 
 
-def test_a_full_disk_is_the_reason_whatever_else_went_wrong():
+def test_a_full_disk_is_the_reported_reason_even_with_network_errors():
     assert reason_of(['Max retries exceeded', 'No space left on device']) == DISK_IS_FULL
     assert reason_of(['x', 'error: Failed to fetch: `https://…`']) == NETWORK_IS_AWAY
 
 
-def test_only_the_last_words_of_an_unknown_reason_are_shown():
+def test_only_the_last_lines_of_an_unknown_failure_are_shown():
     lines = [f'line {number}' for number in range(30)]
     assert reason_of(lines).split('\n') == [*lines[10:], FAILED]
 

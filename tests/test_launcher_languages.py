@@ -45,13 +45,13 @@ def said_by_course(*arguments, **variables):
 
 
 @pytest.mark.parametrize(('asked', 'locale'), CHINESE_WORDS.values(), ids=CHINESE_WORDS)
-def test_course_speaks_the_language(asked, locale):
+def test_course_speaks_chinese_if_chosen_by_locale_terminal_or_option(asked, locale):
     run = said_by_course('tidy', *asked, **locale)
     assert run.stderr == 'course: 没有“tidy”这个命令：./course --help 会列出所有命令。\n'
 
 
 @pytest.mark.parametrize(('asked', 'locale'), ENGLISH_WORDS.values(), ids=ENGLISH_WORDS)
-def test_course_speaks_english(asked, locale):
+def test_course_speaks_english_unless_chinese_is_chosen(asked, locale):
     run = said_by_course('tidy', *asked, **locale)
     assert run.stderr == "course: there is no verb 'tidy': ./course --help lists them.\n"
 
@@ -69,7 +69,7 @@ def test_the_help_is_the_same_table_in_each_language():
         assert re.search('[\u3400-\u9fff]', theirs) or not ours
 
 
-def test_the_launcher_reads_catalogues_as_others_do(monkeypatch):
+def test_the_launcher_reads_catalogues_as_the_students_package_does(monkeypatch):
     monkeypatch.setenv('COURSE_WORDS', str(CATALOGUE))
     known = read_translations(ROOT / 'locale', 'zh_CN', 'launcher')
     assert len(known) > 40
@@ -103,7 +103,7 @@ def test_every_sentence_of_the_launcher_can_be_translated(path):
     ]
 
 
-def test_what_somebody_has_to_look_at_stays_english(tmp_path, monkeypatch):
+def test_fuzzy_translations_of_the_launcher_are_not_used(tmp_path, monkeypatch):
     catalogue = tmp_path / 'launcher.po'
     entries = [
         '#, fuzzy\nmsgid "a \\"b\\""\nmsgstr "甲"\n',
@@ -117,7 +117,7 @@ def test_what_somebody_has_to_look_at_stays_english(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(('verb', 'language'), [('workspace', 'zh_CN'), ('grade', None)])
-def test_what_grades_does_not_speak_the_language_of_the_terminal(verb, language, monkeypatch):
+def test_verbs_that_grade_ignore_the_language_of_the_terminal(verb, language, monkeypatch):
     monkeypatch.setenv('COURSE_LANGUAGE', 'zh_CN')
     monkeypatch.chdir(ROOT)
     started = []
@@ -148,7 +148,7 @@ def test_jupyterlab_has_menus_in_the_language_of_the_lessons(with_pack):
 
 
 @pytest.mark.parametrize('language', ['en', 'de'])
-def test_without_a_language_pack_menus_are_english(with_pack, language):
+def test_menus_are_english_without_a_language_pack(with_pack, language):
     assert jupyterlab_settings(with_pack, language) == with_pack.root / '.jupyterlab'
 
 

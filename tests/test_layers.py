@@ -55,7 +55,7 @@ def nodes(tree):
             yield from nodes(node)
 
 
-def test_no_module_needs_one_that_needs_it():
+def test_no_modules_import_each_other_in_a_circle():
     needs = {
         module: {other for other, _ in imported(module) if other in modules() and other != module}
         for module in modules()
@@ -65,7 +65,7 @@ def test_no_module_needs_one_that_needs_it():
     graphlib.TopologicalSorter(needs).prepare()  # raises CycleError, which names them
 
 
-def test_what_a_module_keeps_to_itself_is_imported_nowhere():
+def test_private_names_of_a_module_are_imported_nowhere():
     taken = [
         (module, f'{other}.{name}')
         for module in modules()
@@ -81,7 +81,7 @@ def layer(module, package):
 
 
 @pytest.mark.parametrize('package', [grader, my_robot_basics], ids=lambda p: p.__name__)
-def test_parts_of_a_package_import_only_from_lower_ones(package):
+def test_parts_of_a_package_import_only_from_lower_layers(package):
     upward = [
         f'{module} imports {other}'
         for module in modules()
@@ -94,18 +94,18 @@ def test_parts_of_a_package_import_only_from_lower_ones(package):
 
 
 @pytest.mark.parametrize('package', [grader, my_robot_basics], ids=lambda p: p.__name__)
-def test_each_part_of_a_package_has_its_line_in_the_map(package):
+def test_each_part_of_a_package_has_its_line_in_the_docstring(package):
     parts = {layer(module, package) for module in modules()} - {''}
     assert sorted(parts) == sorted(package.LAYERS)
     assert set(re.findall(r'`(\w+)`', package.__doc__)) == parts - {'__main__'}
 
 
-def test_what_students_get_needs_no_grader():
+def test_the_students_package_imports_nothing_of_the_grader():
     ours = [module for module in modules() if module.startswith('my_robot_basics')]
     assert [m for m in ours for other, _ in imported(m) if other.startswith('grader')] == []
 
 
-def test_a_file_of_tests_takes_nothing_from_another_one():
+def test_a_file_of_tests_imports_nothing_from_another_file_of_tests():
     """Shared code is in a helper, such as tests/lab_browser.py, or in a fixture of conftest.py."""
     helpers = {path.stem for path in (ROOT / 'tests').glob('*.py')}
     tests = {name for name in helpers if name.startswith('test_')}
@@ -128,7 +128,7 @@ def product():
     return sorted(path for folder in folders for path in folder.rglob('*.py'))
 
 
-def test_a_module_is_short_enough_to_keep_in_mind():
+def test_no_module_is_longer_than_two_hundred_lines():
     """A longer module has two subjects: give each subject a module and a name."""
     lines = {
         str(path.relative_to(ROOT)): len(path.read_text(encoding='utf-8').splitlines())
@@ -138,7 +138,7 @@ def test_a_module_is_short_enough_to_keep_in_mind():
     assert {name: count for name, count in lines.items() if count > MOST_LINES} == {}
 
 
-def test_a_class_has_its_name_alone():
+def test_no_two_public_classes_have_the_same_name():
     """Two classes of one name are two things with the same name, or one thing twice.
 
     A protocol and what implements it have two names, too: GradingRooms and LocalRooms are Rooms.

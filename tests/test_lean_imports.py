@@ -1,4 +1,4 @@
-"""What is not imported at first behaves, once it is asked for, as if it had been."""
+"""Modules that are not imported at first behave, once they are used, as if they had been."""
 
 import json
 import os
@@ -69,25 +69,25 @@ def said_by(program, **variables):
     return done.stdout
 
 
-def test_what_was_left_out_is_made_when_it_is_asked_for():
+def test_modules_left_out_of_nbgrader_are_imported_on_first_use():
     assert said_by(LEAN).strip() == version('nbgrader')
 
 
-def test_formats_that_no_schema_names_are_not_imported_and_can_be_later():
+def test_unused_schema_formats_are_not_imported_at_first_but_can_be_later():
     assert said_by(FORMATS).strip() == '3'
 
 
-def test_the_sandbox_is_tried_and_a_worker_starts_before_what_takes_long_to_import():
+def test_the_sandbox_check_and_workers_start_before_slow_imports():
     assert said_by(EARLY).split() == ['False', 'False']
 
 
-def test_a_worker_s_servers_start_before_what_takes_it_long_to_import():
+def test_a_worker_starts_its_fork_servers_before_slow_imports():
     assert said_by(SERVERS).strip() == 'set()'
 
 
 @pytest.mark.parametrize('name', ['MPLCONFIGDIR', 'XDG_CACHE_HOME', 'HOME'])
 @pytest.mark.parametrize('there', [True, False])
-def test_fonts_lie_where_matplotlib_keeps_them(name, there, tmp_path):
+def test_the_font_cache_is_in_the_folder_of_matplotlib(name, there, tmp_path):
     below = {'MPLCONFIGDIR': '', 'XDG_CACHE_HOME': 'matplotlib', 'HOME': '.cache/matplotlib'}[name]
     folder = tmp_path / 'a folder'
     if there:
@@ -97,9 +97,9 @@ def test_fonts_lie_where_matplotlib_keeps_them(name, there, tmp_path):
     assert imported is not there
 
 
-def test_name_and_version_of_each_distribution_are_in_what_is_told():
+def test_versions_list_name_and_version_of_each_installed_distribution():
     folder = sysconfig.get_path('purelib')
-    # as wheels call them: letters of both cases, and anything for what parts words
+    # wheels write names in either case, and with different separators
     ours = [re.sub('[-_.]+', '-', name).lower() for name in versions._installed(folder)]
     theirs = [
         re.sub('[-_.]+', '-', f'{each.name}-{each.version}-').lower()
@@ -125,7 +125,7 @@ def test_checksums_that_are_damaged_are_made_anew(kept, tmp_path):
     }
 
 
-def test_checksums_are_those_of_the_text_as_it_is(tmp_path):
+def test_checksums_change_with_the_text_of_their_cell(tmp_path):
     course = released_course(tmp_path)
     before = checksums(course, TOY)
     path = course.source_path(TOY)
@@ -135,7 +135,7 @@ def test_checksums_are_those_of_the_text_as_it_is(tmp_path):
     assert [name for name in before if before[name] != after[name]] == ['double-check']
 
 
-def test_checksums_of_another_grader_are_not_used(tmp_path, monkeypatch):
+def test_checksums_of_another_version_of_the_grader_are_not_used(tmp_path, monkeypatch):
     course = released_course(tmp_path)
     path = course.gradebook / FOLDER / f'{TOY}.json'
     checksums(course, TOY)
