@@ -18,7 +18,7 @@ from grader.workers.dask_client import Certificates, check_address, connected
         'tls://scheduler.example.org:8786',
     ],
 )
-def test_an_address_nobody_else_can_listen_at_is_taken(address):
+def test_a_local_or_encrypted_address_is_accepted(address):
     check_address(address)
 
 
@@ -32,7 +32,7 @@ def test_an_address_nobody_else_can_listen_at_is_taken(address):
         'tcp://[fe80::1]:8786',
     ],
 )
-def test_another_machine_needs_tls_and_says_how(address):
+def test_an_unencrypted_address_of_another_machine_is_refused_with_the_tls_options(address):
     with pytest.raises(ClusterError, match='--tls-ca-file, --tls-cert and --tls-key'):
         check_address(address)
 
@@ -40,7 +40,7 @@ def test_another_machine_needs_tls_and_says_how(address):
 @pytest.mark.parametrize(
     'address', ['8786', 'localhost:8786', 'ws://127.0.0.1:8786', 'tcp://', 'inproc://x', '']
 )
-def test_what_is_no_address_is_told(address):
+def test_an_invalid_address_is_reported(address):
     with pytest.raises(ClusterError, match='expected tls://HOST:8786'):
         check_address(address)
 
@@ -50,13 +50,13 @@ def test_tls_needs_certificates(tmp_path):
         connected('tls://127.0.0.1:1', Certificates(ca_file='ca.pem', cert='cert.pem'))
 
 
-def test_no_scheduler_is_told(monkeypatch):
+def test_a_missing_scheduler_is_reported(monkeypatch):
     monkeypatch.setattr('grader.workers.dask_client.CONNECT_TIMEOUT_SEC', 0.1)
     with pytest.raises(ClusterError, match=r'no scheduler at tcp://127.0.0.1:1 that answers'):
         connected('tcp://127.0.0.1:1', Certificates())
 
 
-def test_a_missing_dask_says_how_to_get_it(monkeypatch):
+def test_a_missing_dask_is_reported_with_the_command_that_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, 'distributed', None)
     with pytest.raises(ClusterError, match=r'pip install -r environment\.txt'):
         connected('tcp://127.0.0.1:1', Certificates())
@@ -70,6 +70,6 @@ def test_a_missing_dask_says_how_to_get_it(monkeypatch):
         (['--tls-cert', 'cert.pem'], 'go with --dask'),
     ],
 )
-def test_what_does_not_go_together_is_told_first(options, said, capsys):
+def test_conflicting_options_are_reported_before_grading(options, said, capsys):
     assert main(['grade', *options]) == 1
     assert said in capsys.readouterr().err

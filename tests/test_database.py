@@ -24,7 +24,7 @@ from grader.storage.database import (
 
 @pytest.fixture
 def course(tmp_path):
-    """A course with a database of some other kind: all databases wait and fail alike."""
+    """A course with a database that is none of nbgrader's: all databases wait and fail alike."""
     course = Course.at(tmp_path)
     course.gradebook.mkdir()
     with closing(sqlite3.connect(course.database)) as made:
@@ -54,7 +54,7 @@ def open_files(path):
     return [each for each in psutil.Process().open_files() if each.path == str(path)]
 
 
-def test_a_locked_database_is_waited_for_with_a_word(course, other):
+def test_waiting_for_a_locked_database_is_reported(course, other):
     said = []
 
     def say(line):
@@ -67,7 +67,7 @@ def test_a_locked_database_is_waited_for_with_a_word(course, other):
     assert len(said) == 1
 
 
-def test_a_database_that_stays_locked_is_told_in_the_end(course, other, monkeypatch, capsys):
+def test_a_database_that_stays_locked_is_reported_as_an_error(course, other, monkeypatch, capsys):
     monkeypatch.setattr(failures, 'TIMEOUT_SEC', 0.2)
     with (
         pytest.raises(GradebookError, match=r'locked for 0 s.*run the same command again'),
@@ -78,7 +78,7 @@ def test_a_database_that_stays_locked_is_told_in_the_end(course, other, monkeypa
 
 
 @pytest.mark.parametrize('code', [errno.ENOSPC, errno.EDQUOT])
-def test_a_full_disk_is_told_even_from_behind_other_errors(course, code):
+def test_a_full_disk_is_reported_even_behind_other_errors(course, code):
     wrapped = InvalidEntry('as nbgrader puts it')
     wrapped.__context__ = OSError(code, os.strerror(code))
     with pytest.raises(GradebookError, match='the disk is full') as told, in_sentences(course):
@@ -86,14 +86,14 @@ def test_a_full_disk_is_told_even_from_behind_other_errors(course, code):
     assert 'run the same command again' in str(told.value)
 
 
-def test_a_full_database_is_told(course):
+def test_a_full_database_is_reported_as_a_full_disk(course):
     with closing(sqlite3.connect(course.database)) as full:
         full.execute('PRAGMA max_page_count = 3')
         with pytest.raises(GradebookError, match='the disk is full'), in_sentences(course):
             full.execute('INSERT INTO some VALUES (?)', ['x' * 100_000])
 
 
-def test_a_damaged_database_is_told_with_the_newest_backup(course):
+def test_a_damaged_database_is_reported_with_the_newest_backup(course):
     backups = course.gradebook / 'backups'
     backups.mkdir()
     (backups / 'gradebook-2026-01-01.db').touch()
@@ -105,13 +105,13 @@ def test_a_damaged_database_is_told_with_the_newest_backup(course):
 
 
 @pytest.mark.parametrize('error', [OSError(errno.EACCES, 'no'), ValueError('x'), CourseError('y')])
-def test_other_errors_pass_as_they_are(course, error):
+def test_errors_that_are_not_of_the_database_are_passed_on_unchanged(course, error):
     with pytest.raises(type(error)) as told, in_sentences(course):
         raise error
     assert told.value is error
 
 
-def test_a_database_is_there_whole_or_not_at_all(tmp_path, monkeypatch):
+def test_a_database_is_made_whole_or_not_at_all(tmp_path, monkeypatch):
     course = Course.at(tmp_path)
 
     class Killed(BaseException):
@@ -134,7 +134,7 @@ def test_a_database_is_there_whole_or_not_at_all(tmp_path, monkeypatch):
         assert book.students == []
 
 
-def test_one_engine_serves_as_long_as_it_is_wanted(empty):
+def test_one_engine_serves_all_connections_within_its_block(empty):
     with one_engine(empty.db_url):
         engines = set()
         for _ in range(3):
@@ -146,7 +146,7 @@ def test_one_engine_serves_as_long_as_it_is_wanted(empty):
         assert book.engine not in engines
 
 
-def test_between_two_uses_of_one_engine_the_file_is_let_go(empty):
+def test_the_database_file_is_closed_between_two_uses_of_one_engine(empty):
     with one_engine(empty.db_url):
         with connected(empty.db_url) as book:
             book.update_or_create_student('ada')
@@ -158,7 +158,7 @@ def test_between_two_uses_of_one_engine_the_file_is_let_go(empty):
             assert [student.id for student in book.students] == ['ada']
 
 
-def test_a_database_that_was_put_in_the_place_of_another_is_written_to(empty, tmp_path):
+def test_writes_go_to_a_database_that_replaced_the_former_file(empty, tmp_path):
     backup = shutil.copy(empty.database, tmp_path / 'backup.db')
     with one_engine(empty.db_url):
         with transaction(empty.db_url) as book:
@@ -187,7 +187,7 @@ def test_a_transaction_with_one_engine_is_all_or_nothing_and_leaves_no_trace(emp
             assert [student.id for student in book.students] == ['bob']
 
 
-def test_its_tables_are_those_that_nbgrader_makes(tmp_path):
+def test_the_tables_of_a_made_database_are_those_that_nbgrader_makes(tmp_path):
     course = Course.at(tmp_path)
     make_database(course)
     Gradebook(f'sqlite:///{tmp_path / "theirs.db"}').close()

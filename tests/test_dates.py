@@ -53,8 +53,8 @@ def clock_in(monkeypatch):
         ('Asia/Shanghai', '2026-01-02 12:00:00 +0200', '2026-01-02T10:00:00+00:00'),
     ],
 )
-def test_a_name_that_several_zones_have_is_that_of_this_machine(clock_in, zone, text, utc):
-    """CST is Chinese, too: an exchange there would be six hours behind UTC, and all too late."""
+def test_an_ambiguous_zone_name_means_the_zone_of_this_machine(clock_in, zone, text, utc):
+    """CST is the time of China, too: read as America's, each submission there would be late."""
     clock_in(zone)
     assert date_in(text).isoformat() == utc
 
@@ -79,17 +79,17 @@ def test_a_name_that_several_zones_have_is_that_of_this_machine(clock_in, zone, 
         '2026-01-02 10:00:00 ' + 'a' * 100_000,
     ],
 )
-def test_any_other_text_is_no_time(text):
+def test_a_text_that_is_no_time_is_read_as_none(text):
     assert date_in(text) is None
 
 
-def test_dateutil_is_stopped_by_one_still():
-    """Otherwise the example of a hostile time no longer tests anything."""
+def test_dateutil_still_raises_for_the_hostile_time():
+    """If dateutil did not, the example of a hostile time would no longer test anything."""
     with pytest.raises(ArithmeticError):
         parse(STOPS_DATEUTIL)
 
 
-def test_a_file_is_read_as_far_as_a_time_goes(tmp_path):
+def test_a_date_is_read_from_the_beginning_of_a_regular_file(tmp_path):
     path = tmp_path / 'timestamp.txt'
     assert date_of(path) is None
     path.write_bytes(b'\xff\xfe\x00')
@@ -101,6 +101,6 @@ def test_a_file_is_read_as_far_as_a_time_goes(tmp_path):
     assert date_of(link) is None
 
 
-def test_a_time_that_no_calendar_has_is_none():
+def test_a_timestamp_outside_of_the_calendar_gives_none():
     assert utc_of(1_700_000_000).isoformat() == '2023-11-14T22:13:20+00:00'
     assert utc_of(1e12) is utc_of(-1e12) is utc_of(float('nan')) is None

@@ -29,14 +29,14 @@ def configure(course, text, mode=0o600):
     return path
 
 
-def test_without_a_file_the_database_is_one_of_sqlite(course):
+def test_the_database_is_one_of_sqlite_without_a_configuration_file(course):
     assert configured_db_url(course.gradebook) is None
     assert course.db_url == f'sqlite:///{course.gradebook}/gradebook.db?timeout=60'
     assert not is_in_postgresql(course.db_url)
 
 
 @pytest.mark.parametrize('scheme', ['postgresql', 'postgres', 'postgresql+psycopg'])
-def test_an_address_is_nbgraders_db_url_with_limits_to_waiting(course, scheme):
+def test_an_address_becomes_nbgraders_db_url_with_timeouts(course, scheme):
     configure(course, f'db_url = "{scheme}://grader@db/course?sslmode=verify-full"', mode=0o644)
     address, _, query = course.db_url.partition('?')
     assert address == 'postgresql+psycopg://grader@db/course'
@@ -45,7 +45,7 @@ def test_an_address_is_nbgraders_db_url_with_limits_to_waiting(course, scheme):
     assert '%' not in course.db_url  # nbgrader writes it into a file in which that is special
 
 
-def test_what_an_instructor_says_of_waiting_stays(course):
+def test_a_timeout_set_by_the_instructor_is_kept(course):
     configure(course, 'db_url = "postgresql:///course?host=/run/postgresql&connect_timeout=3"')
     assert course.db_url.count('connect_timeout=') == 1
     assert 'connect_timeout=3&' in course.db_url
@@ -66,7 +66,7 @@ def test_what_an_instructor_says_of_waiting_stays(course):
         'db_url = "postgresql:course"',
     ],
 )
-def test_what_is_no_address_is_told_without_what_it_says(course, text, capsys):
+def test_an_invalid_address_is_reported_without_its_password(course, text, capsys):
     configure(course, text)
     assert main(['scores'], course=course) == 1
     said = capsys.readouterr().err
@@ -98,13 +98,13 @@ def test_an_address_in_nbgraders_configuration_is_refused(course, line, capsys):
     assert 'cr3t' not in said
 
 
-def test_a_gradebook_is_found_again_from_its_database(course, tmp_path):
+def test_the_folder_of_a_gradebook_is_found_from_its_database_address(course, tmp_path):
     assert gradebook_of(course.db_url, tmp_path / 'elsewhere') == course.gradebook
     configure(course, f'db_url = "{URL}"')
     assert gradebook_of(course.db_url, tmp_path) == course.gradebook
 
 
-def test_a_missing_psycopg_is_told(course, monkeypatch):
+def test_a_missing_psycopg_is_reported_with_the_command_that_installs_it(course, monkeypatch):
     configure(course, f'db_url = "{URL}"')
     monkeypatch.setitem(sys.modules, 'psycopg', None)
     words = r'psycopg.*pip install -r environment\.txt'
@@ -133,7 +133,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(('fault', 'said'), FAULTS, ids=lambda each: str(each)[:40])
-def test_each_fault_of_the_server_is_told_with_what_to_do(course, fault, said):
+def test_each_fault_of_the_database_server_is_reported_with_what_to_do(course, fault, said):
     configure(course, f'db_url = "{URL}"')
     wrapped = exc.OperationalError('SELECT 1', {}, fault)
     with pytest.raises(GradebookError, match=said) as told, in_sentences(course):
@@ -143,7 +143,7 @@ def test_each_fault_of_the_server_is_told_with_what_to_do(course, fault, said):
     assert 'cr3t' not in str(told.value)
 
 
-def test_a_fault_that_is_ours_passes_as_it_is(course):
+def test_a_database_error_of_the_course_s_own_code_is_passed_on_unchanged(course):
     configure(course, f'db_url = "{URL}"')
     ours = exc.DataError('INSERT', {}, errors.StringDataRightTruncation('value too long'))
     with pytest.raises(exc.DataError), in_sentences(course):

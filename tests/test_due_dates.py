@@ -33,7 +33,9 @@ def due(course, *arguments):
         ('2026-11-30T18:00+01:00', (18, 0), 1),
     ],
 )
-def test_a_date_is_its_end_and_a_time_without_a_zone_is_ours(course, text, hour, offset_hours):
+def test_a_date_means_the_end_of_the_day_and_times_are_local_by_default(
+    course, text, hour, offset_hours
+):
     zone = timezone(timedelta(hours=offset_hours))
     assert local_time(text) == datetime(2026, 11, 30, *hour, tzinfo=zone)
 
@@ -47,13 +49,13 @@ def test_a_date_is_its_end_and_a_time_without_a_zone_is_ours(course, text, hour,
         ('2026-10-25', (10, 25, 22, 59)),
     ],
 )
-def test_a_time_in_the_night_of_summer_time_is_the_later_of_two(course, monkeypatch, text, utc):
+def test_an_ambiguous_time_at_a_clock_change_is_the_later_one(course, monkeypatch, text, utc):
     monkeypatch.setenv('TZ', 'Europe/Berlin')
     time.tzset()
     assert local_time(text) == datetime(2026, *utc, tzinfo=UTC)
 
 
-def test_a_due_date_an_extension_and_their_end(course, capsys):
+def test_a_due_date_and_an_extension_can_be_set_and_removed(course, capsys):
     assert due(course, TOY, '2026-11-30') == 0
     assert due(course, TOY, '2026-12-03 12:00', '--student', '小明 O"Neil') == 0
     said = capsys.readouterr().out
@@ -70,7 +72,7 @@ def test_a_due_date_an_extension_and_their_end(course, capsys):
     assert deadlines(course.gradebook).due == {}
 
 
-def test_the_rest_of_the_file_stays_as_it_was_written(course):
+def test_setting_a_date_keeps_the_rest_of_the_file_as_written(course):
     course.gradebook.mkdir()
     path = course.gradebook / FILE
     path.write_text(
@@ -94,7 +96,7 @@ def test_the_rest_of_the_file_stays_as_it_was_written(course):
         ([TOY, 'none'], 'it is extended for ada. Remove these extensions first'),
     ],
 )
-def test_what_cannot_be_is_said_and_changes_nothing(course, capsys, arguments, said):
+def test_an_impossible_command_is_reported_and_changes_nothing(course, capsys, arguments, said):
     assert due(course, TOY, '2026-11-30') == 0
     assert due(course, TOY, '2026-12-01', '--student', 'ada') == 0
     before = (course.gradebook / FILE).read_bytes()
@@ -109,7 +111,7 @@ def test_an_extension_needs_a_due_date(course, capsys):
     assert not os.path.exists(course.gradebook / FILE)
 
 
-def test_a_broken_file_is_not_written_over(course, capsys):
+def test_a_broken_file_of_due_dates_is_not_overwritten(course, capsys):
     course.gradebook.mkdir()
     (course.gradebook / FILE).write_text('[due')
     assert due(course, TOY, '2026-12-01') == 1
@@ -117,7 +119,7 @@ def test_a_broken_file_is_not_written_over(course, capsys):
     assert (course.gradebook / FILE).read_text() == '[due'
 
 
-def test_a_date_that_is_none_is_refused(course, capsys):
+def test_an_invalid_date_is_refused(course, capsys):
     with pytest.raises(SystemExit):
         due(course, TOY, 'tomorrow')
     said = capsys.readouterr().err
@@ -125,12 +127,12 @@ def test_a_date_that_is_none_is_refused(course, capsys):
     assert said.endswith(": 'tomorrow' is not a date: write 2026-11-30, or none\n")
 
 
-def test_without_a_date_all_of_them_are_listed(course, capsys):
+def test_the_due_dates_of_all_assignments_are_listed_without_arguments(course, capsys):
     assert due(course) == 0
     assert capsys.readouterr().out.splitlines()[0] == f'{TOY}  no due date'
 
 
-def test_what_a_date_changes_is_counted_by_the_next_grading(course, capsys):
+def test_a_changed_date_prints_the_commands_that_apply_the_change(course, capsys):
     assert due(course, TOY, '2026-11-30') == 0
     assert 'Next: ' not in capsys.readouterr().out
     course.folder('submitted', 'ada', TOY).mkdir(parents=True)

@@ -8,7 +8,7 @@ from grader.common.files import write_whole
 
 
 @pytest.mark.parametrize('content', ['né\r\n', b'\x00\xff'])
-def test_what_is_written_is_all_there(tmp_path, content):
+def test_write_whole_replaces_a_file_with_the_content_alone(tmp_path, content):
     path = tmp_path / 'a.txt'
     path.write_text('longer than what comes')
     write_whole(path, content)
@@ -17,7 +17,7 @@ def test_what_is_written_is_all_there(tmp_path, content):
 
 
 @pytest.mark.parametrize('step', ['fsync', 'replace'])
-def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, step):
+def test_a_full_disk_leaves_the_former_file_in_place(tmp_path, monkeypatch, step):
     def full(*_):
         raise OSError(errno.ENOSPC, 'No space left on device')
 
@@ -30,7 +30,7 @@ def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, step):
     assert os.listdir(tmp_path) == ['a.txt']
 
 
-def test_a_name_that_leaves_no_room_for_ours_is_refused_by_what_is_wrong_with_it(tmp_path):
+def test_a_file_name_that_is_too_long_raises_its_own_error(tmp_path):
     with pytest.raises(OSError, match='File name too long') as refused:
         write_whole(tmp_path / ('x' * 255), '')
     assert not isinstance(refused.value.__context__, OSError)

@@ -1,4 +1,4 @@
-"""Grading onto a disk that has room for some of it: what is there is whole, and it goes on."""
+"""Grading onto a disk that becomes full leaves only whole files, and can be completed."""
 
 import json
 import shutil
@@ -21,7 +21,7 @@ ROOM_BYTES = (0, 4_096, 150_000, 230_000, 250_000, 270_000, 290_000, 310_000)
 
 @pytest.mark.slow
 @pytest.mark.isolation
-def test_a_full_disk_stops_with_a_word_and_without_half_a_file(tmp_path):
+def test_grading_stops_on_a_full_disk_with_a_message_and_can_be_completed(tmp_path):
     course = released_course(tmp_path)
     course.seed(TOY, 'ada')
     for student in ('ada', 'bob', 'zoe'):

@@ -22,7 +22,7 @@ WRONG = 'def double(x):\n    return x + 1'
 
 @pytest.fixture
 def course(released, tmp_path, monkeypatch):
-    """A gradebook of its own; in the rooms' place, a look at the answer's text."""
+    """A gradebook of its own; no answer is run, the verdict is made from its text."""
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
@@ -72,7 +72,9 @@ def test_each_submission_gets_its_row_and_its_scores(course):
         (None, 'there is no file'),
     ],
 )
-def test_what_cannot_be_read_is_zero_with_its_reason_and_stays_as_it_was(course, content, reason):
+def test_an_unreadable_submission_gets_zero_with_a_reason_and_stays_unchanged(
+    course, content, reason
+):
     path = submit(course, 'ada', content or b'')
     if content is None:
         path.rename(path.with_name('99_other.ipynb'))
@@ -90,7 +92,7 @@ def test_a_notebook_without_an_answer_cell_is_graded_as_one_without_answers(cour
     assert rows_of(course)['ada'].stored.score == 0.0
 
 
-def test_what_is_out_of_place_is_told_and_stops_nothing(course):
+def test_misplaced_files_are_reported_and_the_rest_is_graded(course):
     submit(course, 'ada', answered(course, RIGHT, explained='so'))
     submitted = course.folder('submitted', '', '')
     (submitted / 'loose.ipynb').touch()
@@ -112,7 +114,7 @@ def test_what_is_out_of_place_is_told_and_stops_nothing(course):
     assert [name for name, row in rows.items() if row.stored] == ['ada']
 
 
-def test_the_graders_own_failure_stores_nothing_and_the_next_is_graded(course):
+def test_the_graders_own_failure_stores_nothing_and_the_next_submission_is_graded(course):
     submit(course, 'ada', answered(course, '# crash'))
     submit(course, 'bob', answered(course, RIGHT))
     rows = rows_of(course)
@@ -121,7 +123,7 @@ def test_the_graders_own_failure_stores_nothing_and_the_next_is_graded(course):
     assert {record.student_id for record in records(course)} == {'bob'}
 
 
-def test_one_assignment_and_one_student_can_be_asked_for(course):
+def test_one_student_or_assignment_can_be_selected_for_grading(course):
     submit(course, 'ada', answered(course, RIGHT))
     submit(course, 'bob', answered(course, WRONG))
     assert rows_of(course, student_id='bob', assignment=TOY).keys() == {'bob'}
@@ -131,7 +133,7 @@ def test_one_assignment_and_one_student_can_be_asked_for(course):
         find_submissions(course, assignment='99')
 
 
-def test_an_empty_gradebook_is_told_where_submissions_go(tmp_path, released):
+def test_an_empty_gradebook_is_reported_with_the_place_of_submissions(tmp_path, released):
     empty = Course(root=released.root, gradebook=tmp_path / 'none')
     with pytest.raises(CourseError, match='STUDENT/ASSIGNMENT'):
         find_submissions(empty)
@@ -161,7 +163,7 @@ def test_a_seed_can_be_given(course):
     assert rows[0].stored.score == 3.0
 
 
-def test_the_table_shows_scores_reasons_and_no_escape(course, capsys):
+def test_the_table_shows_scores_reasons_and_no_escape_sequence(course, capsys):
     submit(course, 'a\x1b[31m', answered(course, WRONG))
     submit(course, '小明', answered(course, RIGHT, explained='so'))
     submissions = find_submissions(course)
@@ -181,7 +183,9 @@ def test_the_table_shows_scores_reasons_and_no_escape(course, capsys):
 
 
 @pytest.mark.slow
-def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, capsys, monkeypatch):
+def test_a_demo_compares_outcomes_with_those_in_the_names_of_the_samples(
+    course, tmp_path, capsys, monkeypatch
+):
     monkeypatch.setattr(tempfile, 'tempdir', str(tmp_path))
     samples = tmp_path / 'samples'
     samples.mkdir()
@@ -199,8 +203,8 @@ def test_a_demo_compares_what_came_with_what_the_names_say(course, tmp_path, cap
         demo(samples, root=course.root)
 
 
-def test_a_result_is_not_stored_for_files_that_came_meanwhile(course, monkeypatch):
-    """It would be the score of files that are no longer there."""
+def test_no_result_is_stored_if_the_submission_changed_during_grading(course, monkeypatch):
+    """Otherwise it would be the score of files that are no longer there."""
     path = submit(course, 'ada', answered(course, RIGHT))
     looked = task.execute_exercises
 

@@ -40,7 +40,7 @@ def by_cell(course, student):
     return {r.grade_id: r for r in records(course) if r.student_id == student}
 
 
-def test_an_empty_gradebook_learns_an_assignment_once(released, tmp_path):
+def test_an_assignment_is_registered_once_in_an_empty_gradebook(released, tmp_path):
     course = Course(root=released.root, gradebook=tmp_path / 'empty')
     assert register(course, TOY)
     assert not register(course, TOY)
@@ -88,7 +88,7 @@ def test_scores_follow_the_verdicts(course):
     ]
 
 
-def test_an_untouched_manual_answer_is_zero_without_a_person(course):
+def test_an_unchanged_written_answer_is_scored_zero_automatically(course):
     grade(course, 'ada', {})
     assert by_cell(course, 'ada')['explain'].score == 0.0
 
@@ -110,7 +110,7 @@ def test_a_grade_cell_without_a_verdict_never_earns_points(course):
     assert by_cell(course, 'ada')['double-check'].score is None
 
 
-def test_grading_twice_is_the_same_and_a_persons_score_stays(course):
+def test_grading_again_keeps_a_score_that_was_given_by_hand(course):
     first = grade(course, 'ada', {'double-check': 'no'}, explained='so')
     with Gradebook(course.db_url) as book:
         book.find_grade('explain', TOY, TOY, 'ada').manual_score = 1.5
@@ -139,7 +139,7 @@ def test_submitted_files_are_only_read(course):
         assert str(book.find_submission(TOY, 'ada').timestamp) == '2026-01-02 03:04:05'
 
 
-def test_a_timestamp_that_is_none_is_noted(course):
+def test_an_invalid_timestamp_is_noted(course):
     path = submit(course, 'ada', answered(course, RIGHT))
     path.with_name('timestamp.txt').write_text('yesterday evening')
     grade(course, 'ada', {})
@@ -172,7 +172,7 @@ class Killed(BaseException):
 
 
 def kill_at(monkeypatch, step, when):
-    """Let a step be the last one that is done, or the first one that is not."""
+    """Raise Killed before or after a step."""
     place = {'replace': os, 'finish': gradebook, 'unlink': Path}[step]
     does = getattr(place, step)
 
@@ -195,7 +195,7 @@ def kill_at(monkeypatch, step, when):
         ('unlink', 'after', 0),  # all is stored
     ],
 )
-def test_what_was_being_stored_is_stored_by_whoever_comes_next(
+def test_an_interrupted_storing_is_completed_by_the_next_reading(
     course, monkeypatch, step, when, left
 ):
     grade(course, 'ada', {'double-check': 'no'})
@@ -213,7 +213,7 @@ def test_what_was_being_stored_is_stored_by_whoever_comes_next(
     assert [p.name for p in kept.iterdir() if p.suffix != '.new'] == [f'{TOY}.ipynb']
 
 
-def test_what_can_never_be_stored_is_told_and_graded_again(course, caplog):
+def test_a_begun_result_that_cannot_be_stored_is_reported_and_discarded(course, caplog):
     grade(course, 'ada', {})
     kept = course.folder('autograded', 'ada', TOY)
     strange = executed(nbformat.read(kept / f'{TOY}.ipynb', as_version=4), {})
@@ -226,7 +226,7 @@ def test_what_can_never_be_stored_is_told_and_graded_again(course, caplog):
 
 
 @pytest.mark.parametrize('student', ['小明', 'Зоя', 'a b', "o'hara", 'x[1]*', '=cmd()', 'é' * 100])
-def test_names_from_any_alphabet_are_stored_under_themselves(course, student):
+def test_student_names_of_any_alphabet_are_stored_unchanged(course, student):
     submit(course, student, b'no notebook')
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
@@ -240,7 +240,7 @@ def test_names_from_any_alphabet_are_stored_under_themselves(course, student):
     assert by_cell(course, student).keys() == {'double-check', 'double-hidden', 'explain'}
 
 
-def test_scores_are_a_table_that_no_spreadsheet_runs(course):
+def test_scores_are_written_as_a_table_without_spreadsheet_formulas(course):
     grade(course, '=cmd()', {'double-check': '=HYPERLINK("x")', 'double-hidden': '?'})
     grade(course, 'ada', {'double-check': 'expected "a", saw\n\x1b[31mb'})
     with Gradebook(course.db_url) as book:
@@ -269,7 +269,7 @@ def test_scores_are_a_table_that_no_spreadsheet_runs(course):
     assert {r['assignment'] for r in rows} == {TOY}
 
 
-def test_a_large_class_takes_no_more_questions_to_the_database(course, monkeypatch):
+def test_a_large_class_takes_no_more_database_queries_than_a_small_one(course, monkeypatch):
     questions = []
 
     @event.listens_for(Engine, 'before_cursor_execute')
@@ -298,7 +298,9 @@ def test_a_large_class_takes_no_more_questions_to_the_database(course, monkeypat
     assert records(course) == at_once
 
 
-def test_a_seed_is_a_students_own_and_follows_the_lessons_text(course, released, tmp_path):
+def test_a_seed_depends_on_the_student_the_course_and_the_lesson_s_text(
+    course, released, tmp_path
+):
     seed = course.seed(TOY, 'ada')
     assert int(seed, 16)
     assert seed == course.seed(TOY, 'ada') == course.seeds(TOY)('ada')
@@ -318,7 +320,7 @@ def test_a_seed_is_a_students_own_and_follows_the_lessons_text(course, released,
     write_source(course, toy_lesson())
 
 
-def test_two_that_begin_at_once_agree_on_one_secret(course):
+def test_threads_that_begin_at_once_agree_on_one_secret(course):
     seeds = []
     threads = [
         threading.Thread(target=lambda: seeds.append(course.seed(TOY, 'ada'))) for _ in range(8)
@@ -332,7 +334,7 @@ def test_two_that_begin_at_once_agree_on_one_secret(course):
     assert not list(course.gradebook.glob('.*'))
 
 
-def test_what_stands_for_an_unreadable_submission_is_a_notebook_with_its_reason(course):
+def test_an_unreadable_submission_is_stored_as_a_notebook_with_a_reason(course):
     submit(course, 'ada', json.dumps({'cells': []}))
     folder = course.folder('submitted', 'ada', TOY)
     submission = read_submission(folder, student_id='ada', assignment=TOY)
@@ -351,8 +353,8 @@ def stored(course, student):
 
 
 @pytest.mark.parametrize('name', ['x' * 252 + '.py', 'gone.py'])
-def test_what_can_not_be_kept_beside_a_notebook_stores_no_scores(course, name):
-    """Points were in the database, and neither the notebook nor a page was there."""
+def test_no_scores_are_stored_if_an_extra_file_cannot_be_kept(course, name):
+    """Otherwise points would be in the database without a notebook or a page."""
     submission, graded = graded_with(course, 'ada')
     file = submission.path.with_name(name)
     if name != 'gone.py':
@@ -363,7 +365,7 @@ def test_what_can_not_be_kept_beside_a_notebook_stores_no_scores(course, name):
     assert stored(course, 'ada') == []
 
 
-def test_what_no_file_can_hold_stores_no_scores(course):
+def test_no_scores_are_stored_if_a_note_cannot_be_encoded(course):
     submission, graded = graded_with(course, 'ada')
     graded.metadata[KEY].notes = ['the file `x\udcff.py` of 3.0 MB was left out']
     with pytest.raises(UnicodeEncodeError):

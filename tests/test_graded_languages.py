@@ -1,4 +1,4 @@
-"""Grading does not know languages: an answer earns the same in each edition of its lesson."""
+"""Grading ignores languages: an answer earns the same in each edition of its lesson."""
 
 import csv
 import shutil
@@ -59,7 +59,7 @@ def in_edition(language, submitted, assignment):
 
 @pytest.mark.parametrize('assignment', ASSIGNMENTS)
 @pytest.mark.parametrize('language', EDITIONS)
-def test_of_each_sample_the_same_is_graded_whichever_edition_it_is_of(language, assignment):
+def test_a_sample_is_restored_to_the_same_notebook_in_each_edition(language, assignment):
     names = [name for name, path in PATHS.items() if assignment_of(path) == assignment]
     differ = 0
     for name in (each for each in names if '-zero-' not in each):  # of no lesson, or of another
@@ -114,7 +114,7 @@ WRONG = 'def double(x):\n    return x + 1'
 
 @pytest.fixture
 def course(tmp_path, monkeypatch):
-    """A small course; in the rooms' place, a look at the answer's text."""
+    """A small course; no answer is run, the verdict is made from its text."""
 
     async def look(notebook, **_):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
@@ -144,7 +144,7 @@ def page(course, student):
     return (course.folder('feedback', student, TOY) / f'{TOY}.html').read_text(encoding='utf-8')
 
 
-def test_a_class_of_several_languages_is_graded_alike_and_each_reads_its_own(course):
+def test_students_of_all_languages_are_graded_alike_and_read_their_own_language(course):
     for number, answer in enumerate((RIGHT, WRONG)):
         submit(course, f'ada{number}', of(course, answer))
         submit(course, f'小明{number}', of(course, answer, 'zh_CN'))
@@ -160,7 +160,7 @@ def test_a_class_of_several_languages_is_graded_alike_and_each_reads_its_own(cou
     assert '给 小明1 的反馈' in page(course, '小明1')
 
 
-def test_who_changes_the_language_between_submissions_keeps_their_grade(course):
+def test_a_student_who_changes_the_language_keeps_the_grade(course):
     submit(course, 'ada', of(course, RIGHT))
     assert graded(course)['ada'][0] == 3.0
     submit(course, 'ada', of(course, RIGHT, 'zh_CN'))

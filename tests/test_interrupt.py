@@ -1,4 +1,4 @@
-"""Ctrl-C and the like while a class is graded in real rooms; SIGKILL, which nobody can answer."""
+"""Ctrl-C, SIGTERM, SIGHUP and SIGKILL while a class is graded in real rooms."""
 
 import contextlib
 import os
@@ -52,8 +52,8 @@ class Processes(NamedTuple):
 def kernels_of(run):
     """Wait until both kernels of a submission run; return all processes of the run, sorted out.
 
-    Below it are its workers, their rooms, and kernels that were started; what forks kernels, and
-    kernels that were forked, no longer are.
+    Below it are its workers, their rooms, and kernels that were started. Fork servers and the
+    kernels that they fork are no descendants of it.
     """
     deadline, sessions = time.monotonic() + 120, set()
     while time.monotonic() < deadline and run.poll() is None:
@@ -61,7 +61,7 @@ def kernels_of(run):
         commands = {process: ' '.join(_command(process)) for process in below}
         started = [p for p, command in commands.items() if 'ipykernel_launcher' in command]
         sessions |= {p.pid for p, command in commands.items() if 'forkserver' in command}
-        # they leave their parent, and keep the session that they began
+        # fork servers leave their parent, and keep the session that they began
         servers = [p for p in psutil.process_iter() if _session(p) in sessions and p not in below]
         forked = [kernel for kernels in map(_below, servers) for kernel in kernels]
         if len(started) + sum(bool(_below(server)) for server in servers) >= 2:
@@ -92,7 +92,7 @@ def _command(process):
 
 
 def alive(processes):
-    """Wait for the end of all; return what goes on."""
+    """Wait until all processes end; return those that still run."""
     _, left = psutil.wait_procs([one for each in processes for one in each], timeout=30)
     return [process for process in left if process.status() != psutil.STATUS_ZOMBIE]
 
@@ -114,7 +114,7 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(cour
 
 
 @pytest.mark.slow
-def test_a_run_that_is_killed_takes_its_kernels_with_it_and_is_done_again(course, run):
+def test_a_killed_run_ends_its_kernels_and_can_be_repeated(course, run):
     below = kernels_of(run)
     run.kill()
     run.communicate()
@@ -152,7 +152,7 @@ def slow_ones(course):
 @pytest.mark.isolation
 @pytest.mark.slow  # test_workers.py kills workers, and test_fork_servers.py servers
 @pytest.mark.parametrize('kill', [killed, killed_servers])
-def test_what_is_killed_below_a_run_changes_no_grade(course, slow_ones, run, kill):
+def test_killed_workers_or_fork_servers_change_no_grade(course, slow_ones, run, kill):
     found = kernels_of(run)
     assert found.servers
     assert not alive(kill(found))

@@ -89,12 +89,14 @@ def give_by_hand(course, student, points):
         ('小明', '2026-01-10 22:00:00 UTC', 3.0),  # no extension makes the time shorter
     ],
 )
-def test_lateness_costs_what_the_file_says(student, handed_in, score, course):
+def test_a_late_submission_loses_points_by_the_rules_of_the_file(
+    student, handed_in, score, course
+):
     (course.gradebook / FILE).write_text(RULES)
     assert grade(course, student, handed_in) == pytest.approx(score)
 
 
-def test_the_gradebook_knows_what_is_due_and_what_it_cost(course):
+def test_the_gradebook_has_due_date_extension_and_late_penalty(course):
     (course.gradebook / FILE).write_text(RULES)
     grade(course, 'ada', '2026-01-13 22:59:00 UTC')
     with Gradebook(course.db_url) as book:
@@ -105,7 +107,7 @@ def test_the_gradebook_knows_what_is_due_and_what_it_cost(course):
     assert found['late_penalty'] == -0.3
 
 
-def test_every_number_is_the_one_that_is_shown(course):
+def test_a_penalty_is_the_same_rounded_number_in_all_tables(course):
     (course.gradebook / FILE).write_text(RULES)
     assert grade(course, 'bob', '2026-01-13 22:58:00 UTC') == 2.1  # 3 - 0.9
     assert ',late_penalty,-0.9,' in write_scores(course).read_text(encoding='utf-8')
@@ -114,7 +116,7 @@ def test_every_number_is_the_one_that_is_shown(course):
         assert book.find_submission(TOY, 'bob').late_submission_penalty == 0.9
 
 
-def test_lateness_takes_its_share_of_points_given_by_hand_too(course, caplog):
+def test_a_late_penalty_also_reduces_points_given_by_hand(course, caplog):
     (course.gradebook / FILE).write_text(RULES)
     grade(course, 'bob', '2026-01-13 22:58:00 UTC')
     grade(course, 'ada', '2026-01-10 22:58:00 UTC')
@@ -127,21 +129,21 @@ def test_lateness_takes_its_share_of_points_given_by_hand_too(course, caplog):
     give_by_hand(course, 'bob', 1.0)
     (page,) = (each for each in write_feedback(course) if 'bob' in each.parts)
     assert '2.8 of 5 points' in page.read_text(encoding='utf-8')  # 4 - 1.2
-    assert caplog.text == ''  # the page says so to whom it concerns
+    assert caplog.text == ''  # the page says so to the student
 
 
-def test_a_penalty_is_in_hundredths_of_a_point():
+def test_a_penalty_is_rounded_to_hundredths_of_a_point():
     rules = Deadlines(per_day=0.1)
     assert [rules.penalty(points, 86_400) for points in (3, 0.33, 7 / 3)] == [0.3, 0.03, 0.23]
 
 
-def test_what_is_taken_out_of_the_file_counts_no_more(course):
+def test_rules_removed_from_the_file_no_longer_apply(course):
     for rules, score in ((RULES, 2.7), (RULES.partition('[late]')[0], 3.0), (RULES, 2.7), ('', 3)):
         (course.gradebook / FILE).write_text(rules)
         assert grade(course, 'bob', '2026-01-11 22:59:00 UTC') == pytest.approx(score)
 
 
-def test_without_a_file_nbgraders_own_due_date_stays_and_costs_nothing(course):
+def test_nbgraders_own_due_date_costs_nothing_without_a_file_of_deadlines(course):
     assert deadlines(course.gradebook) is None
     with Gradebook(course.db_url) as book:
         book.find_assignment(TOY).duedate = datetime(2026, 1, 1)
@@ -173,13 +175,13 @@ def test_without_a_file_nbgraders_own_due_date_stays_and_costs_nothing(course):
         ('[late]\ngrace_minutes = -1', 'grace_minutes = -1 is out of range: expected 0 or more'),
     ],
 )
-def test_what_is_wrong_in_the_file_is_said_before_anything_is_graded(rules, wrong, course):
+def test_a_fault_in_the_file_of_deadlines_is_reported_before_grading(rules, wrong, course):
     (course.gradebook / FILE).write_text(rules)
     with pytest.raises(CourseError, match=f'{FILE}: .*{wrong}.* has an example'):
         list(grade_all(course, [], trust_students=True))
 
 
-def test_days_that_have_begun_count():
+def test_each_late_day_that_has_begun_counts():
     rules = Deadlines(per_day=0.2)
     assert [rules.penalty(10, days * 86_400) for days in (0, 0.01, 1, 1.01, 9)] == [
         None,
@@ -187,7 +189,7 @@ def test_days_that_have_begun_count():
     ]
 
 
-def test_an_extension_of_somebody_who_has_handed_in_nothing_is_told(course):
+def test_an_extension_for_a_student_without_a_submission_is_reported(course):
     (course.gradebook / FILE).write_text(RULES)
     submit(course, 'ada', '')
     assert extended_for_nobody(course) == [
@@ -200,13 +202,13 @@ def test_an_extension_of_somebody_who_has_handed_in_nothing_is_told(course):
     assert extended_for_nobody(course) == []
 
 
-def test_what_lateness_costs_is_told_with_the_score_and_not_logged(course, caplog):
+def test_a_late_penalty_reduces_the_score_and_is_not_logged(course, caplog):
     (course.gradebook / FILE).write_text(RULES)
     assert grade(course, 'bob', '2026-01-11 23:59:00 UTC') < 3.0
     assert caplog.text == ''
 
 
-def test_the_example_of_the_document_is_understood():
+def test_the_example_of_the_document_for_instructors_is_read_correctly():
     page = (ROOT / 'docs/for-instructors.md').read_text(encoding='utf-8')
     (example,) = re.findall(r'```toml\n(\[late\].*?)```', page, re.DOTALL)
     found = read_deadlines(example.encode(), Path(FILE))
@@ -219,7 +221,7 @@ def given(course):
     return {row.student_id: row.score for row in records(course) if not row.max_score}
 
 
-def test_a_date_that_is_set_later_counts_in_the_next_table(course):
+def test_a_due_date_that_is_set_later_counts_in_the_next_table(course):
     grade(course, 'bob', '2026-01-11 22:00:00 UTC')
     grade(course, 'ada', '2026-01-11 22:00:00 UTC')
     _, late = RULES.split('[late]')
@@ -236,7 +238,7 @@ def test_a_date_that_is_set_later_counts_in_the_next_table(course):
 
 
 def exported(course, *arguments):
-    """Let nbgrader's own command write its table; return its rows, or what it said."""
+    """Let nbgrader's own command write its table; return its rows, or its errors."""
     run = nbgrader_export(course, '--to', 'export.csv', *arguments)
     if run.returncode:
         return run.stderr
@@ -261,7 +263,7 @@ def nbgrader_export(course, *arguments, db_url=None):
 
 
 @pytest.mark.starts
-def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(course):
+def test_nbgraders_own_table_has_current_penalties_and_names_with_a_comma(course):
     (course.gradebook / FILE).write_text(RULES)
     grade(course, 'Lovelace, Ada', '2026-01-13 22:58:00 UTC')
     grade(course, 'bob', '2026-01-10 22:58:00 UTC')
@@ -276,7 +278,7 @@ def test_nbgraders_own_table_has_the_penalty_of_today_and_a_name_with_a_comma(co
 
 
 @pytest.mark.starts
-def test_nbgraders_own_table_has_no_lesson_that_was_withdrawn_before_anybody_had_it(course):
+def test_nbgraders_own_table_omits_a_lesson_withdrawn_before_any_submission(course):
     grade(course, 'bob', None)
     add_lesson(course, '01_more')
     try:
@@ -288,8 +290,8 @@ def test_nbgraders_own_table_has_no_lesson_that_was_withdrawn_before_anybody_had
 
 
 @pytest.mark.starts
-def test_nbgraders_own_table_goes_through_a_link_and_says_where_it_cannot(course, tmp_path):
-    """As to /dev/stdout: root would put a file in its place."""
+def test_nbgraders_own_table_follows_a_link_and_reports_a_missing_folder(course, tmp_path):
+    """Such as /dev/stdout, which root could replace with a file."""
     grade(course, 'bob', None)
     link, target = tmp_path / 'link.csv', tmp_path / 'target.csv'
     link.symlink_to(target)
@@ -318,7 +320,7 @@ def test_a_backup_is_exported_as_it_is_and_nothing_is_put_beside_it(course, tmp_
 
 
 def steps_of_a_recount(course, students, handed_in):
-    """Let so many hand in and earn a point; return the steps of SQLite in a look, in hundreds."""
+    """Let these students earn a point; return the steps of SQLite in a recount, in hundreds."""
     with Gradebook(course.db_url) as book:
         notebook = book.find_notebook(TOY, TOY)
         cell = notebook.grade_cells[0]
@@ -345,7 +347,7 @@ def steps_of_a_recount(course, students, handed_in):
 
 
 @pytest.mark.parametrize('day', [1, 11])
-def test_a_look_at_a_class_four_times_as_large_costs_no_more_than_that(course, day):
+def test_recounting_penalties_takes_time_in_proportion_to_the_class(course, day):
     handed_in = datetime(2026, 1, day)
     (course.gradebook / FILE).write_text(RULES)
     register(course, TOY)
