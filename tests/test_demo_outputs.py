@@ -62,12 +62,12 @@ def test_a_source_keeps_what_nbval_compares_and_no_pixels(sanitize):
     assert clean_source(cleaned, sanitize) == cleaned
 
 
-def test_a_source_keeps_nothing_of_a_cell_that_differs_each_time(sanitize):
+def test_a_source_keeps_no_output_of_a_cell_that_differs_each_time(sanitize):
     notebook = lesson(said('31 ms\n'), tags=('demo', 'nbval-ignore-output'))
     assert outputs_of(clean_source(notebook, sanitize)) == []
 
 
-def test_an_output_that_nbval_calls_the_same_stays(sanitize):
+def test_a_released_output_stays_if_nbval_considers_it_unchanged(sanitize):
     released = lesson(said('31 ms\n'), picture('an arm'))
     built = lesson(said('47 ms\n'), picture('an arm', OTHER_PIXEL))
     assert keep_outputs(built, released, sanitize) == []
@@ -77,7 +77,7 @@ def test_an_output_that_nbval_calls_the_same_stays(sanitize):
     assert 'image/png' not in shown.data  # the picture is stored once
 
 
-def test_what_a_cleaned_source_lacks_comes_from_the_last_release(sanitize):
+def test_outputs_missing_from_a_cleaned_source_come_from_the_last_release(sanitize):
     released = lesson(said('31 ms\n'), picture('an arm'))
     built = clean_source(released, sanitize)
     assert keep_outputs(built, released, sanitize, fresh=True) == []
@@ -85,7 +85,7 @@ def test_what_a_cleaned_source_lacks_comes_from_the_last_release(sanitize):
 
 
 @pytest.mark.parametrize('tags', [('demo',), ('demo', 'nbval-ignore-output')])
-def test_fresh_outputs_are_taken_where_they_are_asked_for(sanitize, tags):
+def test_fresh_outputs_are_taken_only_if_they_are_asked_for(sanitize, tags):
     released, built = lesson(said('31 ms\n'), tags=tags), lesson(said('47 ms\n'), tags=tags)
     assert keep_outputs(built, released, sanitize, fresh=True) == []
     assert outputs_of(built)[0].text == '47 ms\n'
@@ -93,7 +93,7 @@ def test_fresh_outputs_are_taken_where_they_are_asked_for(sanitize, tags):
     assert outputs_of(built)[0].text == '31 ms\n'
 
 
-def test_other_words_are_another_output(sanitize):
+def test_an_output_with_different_words_replaces_the_released_one(sanitize):
     released = lesson(said('31 ms\n'), picture('an arm'))
     built = lesson(said('late\n'), picture('two arms', OTHER_PIXEL))
     assert keep_outputs(built, released, sanitize) == []
@@ -102,7 +102,7 @@ def test_other_words_are_another_output(sanitize):
     assert OTHER_PIXEL in shown.data['text/html']
 
 
-def test_a_picture_of_changed_code_is_the_new_one_or_is_named(sanitize):
+def test_changed_code_takes_its_new_picture_or_is_reported_as_lacking_one(sanitize):
     released = lesson(picture('an arm'))
     changed = lesson(picture('an arm', OTHER_PIXEL), source='measure(colour)')
     assert keep_outputs(changed, released, sanitize) == []
@@ -135,7 +135,7 @@ def test_a_release_takes_the_pictures_out_of_the_source_and_keeps_its_own(tmp_pa
 
 
 @pytest.mark.parametrize('path', sorted(ROOT.glob('solutions/*/*.ipynb')), ids=lambda p: p.stem)
-def test_the_lessons_are_stored_so(path):
+def test_the_lessons_are_stored_as_cleaned_sources(path):
     sanitize = read_sanitizer(ROOT / 'solutions/nbval_sanitize.cfg')
     source = nbformat.read(path, as_version=4)
     assert clean_source(source, sanitize) == source
@@ -155,7 +155,7 @@ def test_each_picture_is_in_the_repository_once(name):
 
 
 @pytest.mark.parametrize('name', Course().assignments())
-def test_each_picture_is_there_in_each_edition(name):
+def test_no_edition_has_a_placeholder_instead_of_a_picture(name):
     editions = [*(ROOT / 'notebooks').glob(f'**/{name}.ipynb')]
     assert len(editions) == 2
     for path in editions:

@@ -102,7 +102,7 @@ def headings_of(path):
     return {re.sub(r'[^\w\- ]', '', title.lower()).replace(' ', '-') for title in titles}
 
 
-def test_what_is_looked_for_is_found():
+def test_the_patterns_find_paths_modules_and_tests_in_documents():
     text = (ROOT / 'README.md').read_text()
     assert 'tests/benchmarks/class_of_500.py' in {*paths_in(text)}
     assert 'gradebook/scores.csv' not in {*paths_in(text)}

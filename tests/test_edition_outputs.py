@@ -1,4 +1,4 @@
-"""What a lesson of an edition shows before it is run: the course's own words are translated."""
+"""Stored outputs of an edition's lessons: the course's own words are translated."""
 
 import html
 import re
@@ -65,16 +65,16 @@ def shown(output):
 
 
 @pytest.mark.parametrize(('english', 'chinese'), PRINTED.items())
-def test_what_the_course_printed_is_translated(english, chinese):
+def test_lines_printed_by_the_course_are_translated(english, chinese):
     assert shown(new_output('stream', text=english)).text == chinese
 
 
 @pytest.mark.parametrize('line', NOT_OURS)
-def test_what_the_lessons_code_or_ros2_printed_stays(line):
+def test_lines_printed_by_lesson_code_or_ros2_are_not_translated(line):
     assert shown(new_output('stream', text=line)).text == line
 
 
-def test_a_panel_tells_its_nodes_state_and_keeps_its_log():
+def test_a_panel_translates_the_state_of_its_node_and_keeps_its_log():
     page = f'<pre style="{panel.STYLE}">{PANEL}</pre>'
     assert page.startswith(edition_outputs.PANEL)
     data = shown(new_output('display_data', {'text/html': page, 'text/plain': PANEL})).data
@@ -85,7 +85,7 @@ def test_a_panel_tells_its_nodes_state_and_keeps_its_log():
     assert data['text/html'].startswith(f'<pre style="{panel.STYLE}">Arm: 已停止\n')
 
 
-def test_what_the_doctor_found_is_translated_but_for_its_code():
+def test_a_report_of_the_doctor_is_translated_except_for_its_code():
     assert DOCTOR.startswith(edition_outputs.DOCTOR)
     page = shown(new_output('display_data', {'text/html': DOCTOR, 'text/plain': ''})).data
     assert page['text/html'] == (
@@ -95,7 +95,7 @@ def test_what_the_doctor_found_is_translated_but_for_its_code():
     )
 
 
-def test_a_value_stays():
+def test_the_value_of_an_expression_is_not_translated():
     value = new_output('execute_result', {'text/plain': 'no node is running'}, execution_count=1)
     assert shown(value).data['text/plain'] == 'no node is running'
 
@@ -158,6 +158,6 @@ def test_no_display_of_the_course_is_in_english_in_a_released_lesson(name):
         if output.get('data', {}).get('text/html')
     ]
     ours = [p for p in pages if p.startswith((edition_outputs.PANEL, edition_outputs.DOCTOR))]
-    # in what stands outside of code and log lines
+    # the text outside of code and log lines
     texts = [re.sub(r'<pre style="margin:2px.*?</pre>|\n(?s:.*)', '', page) for page in ours]
     assert [text for text in texts if not re.search('[\u3400-\u9fff]', text)] == []

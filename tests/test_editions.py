@@ -65,7 +65,7 @@ def test_a_release_says_how_much_is_not_translated(toy):
 
 
 @pytest.mark.starts
-def test_a_translation_that_tells_an_answer_is_not_released(toy):
+def test_a_translation_that_reveals_an_answer_is_not_released(toy):
     put(toy, '# A toy', '# return x + x  # the secret answer')
     with pytest.raises(CourseError, match=r'nothing was released.*secret answer'):
         release(toy)
@@ -76,7 +76,7 @@ def test_there_is_a_chinese_edition():
 
 
 @each_lesson
-def test_all_but_the_text_is_the_same_in_each_byte(language, name):
+def test_an_edition_differs_from_the_english_lesson_in_its_text_alone(language, name):
     english, other = both(language, name)
     assert len(english.cells) == len(other.cells)
     words = OutputWords(ROOT / 'locale', language)  # tests/test_edition_outputs.py
@@ -92,7 +92,7 @@ def test_all_but_the_text_is_the_same_in_each_byte(language, name):
 
 
 @each_lesson
-def test_the_text_is_what_the_catalogue_says(language, name):
+def test_the_text_of_an_edition_is_that_of_its_catalogue(language, name):
     english, other = both(language, name)
     translations = EDITIONS[language].translations(name)
     for ours, theirs in zip(english.cells, other.cells, strict=True):
@@ -105,7 +105,7 @@ def test_the_text_is_what_the_catalogue_says(language, name):
 
 
 @each_lesson
-def test_links_lead_to_what_is_given_out(language, name):
+def test_links_of_translated_cells_lead_to_released_files(language, name):
     folder = ROOT / 'notebooks' / language / name
     text = '\n'.join(cell.source for cell in both(language, name)[1].cells if is_translated(cell))
     links = set(re.findall(r'\]\((?!https://)([^)]+)\)', text))
@@ -121,7 +121,7 @@ def test_an_edition_has_the_files_of_the_english_one(language):
 
 @pytest.mark.parametrize('language', EDITIONS)
 @pytest.mark.parametrize('page', ['index.ipynb', 'terms.md', 'what_next.md'])
-def test_the_links_of_its_pages_lead_somewhere(language, page):
+def test_links_of_the_pages_of_an_edition_lead_to_existing_files(language, page):
     text = (ROOT / 'notebooks' / language / page).read_text(encoding='utf-8')
     links = set(re.findall(r'\]\((?!https://)([^)]+)\)', text))
     assert links
@@ -129,7 +129,7 @@ def test_the_links_of_its_pages_lead_somewhere(language, page):
     assert {link for link in links if not (folder / link).is_file()} == set()
 
 
-def test_the_contents_lead_to_the_other_languages_and_back():
+def test_the_contents_pages_of_the_languages_link_to_each_other():
     page = nbformat.read(ROOT / 'notebooks/index.ipynb', as_version=4).cells[0].source
     assert '[中文](zh_CN/index.ipynb)' in page
     page = nbformat.read(ROOT / 'notebooks/zh_CN/index.ipynb', as_version=4).cells[0].source
@@ -142,7 +142,7 @@ def test_no_space_follows_a_chinese_full_stop_in_the_contents():
     assert [cell.id for cell in cells if re.search('[，。；：] ', cell.source)] == []
 
 
-def test_the_chinese_contents_say_the_same_of_each_lesson():
+def test_the_chinese_contents_state_the_same_facts_for_each_lesson():
     row = re.compile(r'^\| \[(.+?)\]\((.+?)\) \| .+ \| (\d+) \| (.+?) \| (\d+) \|$', re.MULTILINE)
     pages = [
         nbformat.read(ROOT / 'notebooks' / path, as_version=4).cells[0].source

@@ -1,4 +1,4 @@
-"""What a check says when it fails leaves no English words in Chinese, whatever values it has.
+"""Failures of checks have no English words left in Chinese, whatever values they quote.
 
 Each `fail(expected=…, seen=…, hint=…)` of the code is translated with values that are not words.
 """
@@ -18,7 +18,7 @@ PARTS = ('expected', 'seen', 'hint')
 FAIL = {'fail', 'expect'}
 MOST_TEXTS, MOST_DEEP = 8, 6
 NAME, NUMBER = 'arm_1', '7'
-"""What stands in a place of which nothing is known."""
+"""They stand in for values that the code does not show."""
 IS_NUMBER = re.compile(
     r'.*(sec|hz|count|number|length|len|size|points|earned|round|far|abs|deg|rad|ran|most|max|min'
     r'|code|copies|speed|asked|answered|times|hours).*|x|y|n',
@@ -27,7 +27,7 @@ IS_NUMBER = re.compile(
 CODE = re.compile(
     r'`[^`]*`|\'[^\']*\'|"[^"]*"|--[\w-]+|\{[^}]*\}|[\w…]*[/_.(=\[:][^\s，。；：（）]*'
 )
-"""What nobody translates: what is quoted, options, paths, names with a _ or a dot, and calls."""
+"""Text that is not translated: quotations, options, paths, names with a _ or a dot, calls."""
 WORD = re.compile(r'(?<![A-Za-z])[a-z]{2,}(?![A-Za-z])')
 NAMES = {
     *('rad', 'notebook', 'rcl', 'rclpy', 'colcon', 'logger', 'main', 'time', 'call', 'return'),
@@ -35,7 +35,7 @@ NAMES = {
     *('name', 'position', 'header', 'future'),
     *('succeeded', 'canceled', 'aborted'),
 }
-"""What ROS, Python and the lessons call so in each language."""
+"""Words of ROS, Python and the lessons that are the same in each language."""
 
 
 def name_of(node):
@@ -62,7 +62,7 @@ def assigned(nodes):
 
 
 def given(tree):
-    """Return what the functions of a module are given for each parameter, in the module."""
+    """Return the arguments that calls in a module pass to its functions, by parameter."""
     found = defaultdict(lambda: defaultdict(list))
     known = {function.name: function.args for function in functions(tree)}
     for call in ast.walk(tree):
@@ -75,7 +75,7 @@ def given(tree):
 
 
 class Said:
-    """What the expressions of some modules may say: all that is one text or another."""
+    """The texts that expressions of some modules may have as their value."""
 
     def __init__(self, trees):
         self._returned = defaultdict(list)
@@ -141,7 +141,7 @@ class Said:
 
 
 def reasons():
-    """Return what checks may say when they fail, and in which function."""
+    """Return the reasons that checks may give for a failure, and in which function."""
     said, found = Said(ast.parse(path.read_text(encoding='utf-8')) for path in SOURCES), {}
     for function, here in said.functions:
         for call in ast.walk(function):
@@ -153,7 +153,7 @@ def reasons():
                     for text in texts:
                         if text and not text.startswith(
                             (',', ';')
-                        ):  # that is an end of another one
+                        ):  # such a text is the end of another one
                             reason = REASON.format(**(first | {part: text}))
                             found.setdefault(reason, function.name)
     return found
@@ -173,13 +173,13 @@ def test_no_failure_keeps_words_in_english():
     assert {(said[reason], reason): words for reason, words in left.items() if words} == {}
 
 
-def test_words_that_are_left_are_found():
+def test_english_words_that_are_left_in_a_translation_are_found():
     assert english_in('预期：`f(x)` 返回 /a_b；实际：3 rad。用 f(the_arm) 和 --ros-args') == []
     assert english_in('预期：一条消息；实际：none in 3 s。检查名称') == ['none', 'in']
     assert english_in('预期，一条消息，实际个错误 1') == ['预期，一条消息，实际个错误 1']
 
 
-def test_advice_behind_the_topic_of_a_cause_stays_behind_it():
+def test_advice_that_follows_a_topic_still_follows_the_topic_in_chinese():
     advice = 'publish exactly the message that your callback is given'
     for cause in 'no message arrives', 'only other messages arrive':
         said = in_language('zh_CN', f'{cause} on /monitor/joint_states: {advice}')

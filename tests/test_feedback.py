@@ -51,7 +51,7 @@ def feedback(course, student, notebook, *, reasons=None, outputs=None, notes=())
     return place.read_text()
 
 
-def test_a_failed_check_tells_what_was_expected_seen_and_what_to_try(course):
+def test_a_failed_check_shows_what_was_expected_and_seen_and_what_to_try(course):
     html = feedback(
         course,
         'ada',
@@ -71,7 +71,7 @@ STOPPED = 'your cell `double` stopped with NameError: no such thing'
 UNDEFINED = {'double-hidden': 'expected a function `double`, saw none: define it'}
 
 
-def test_what_stopped_the_students_cell_comes_first_where_points_are_missing(course):
+def test_the_error_of_a_cell_comes_first_if_points_are_missing(course):
     html = feedback(course, 'bea', answered(course, RIGHT), reasons=UNDEFINED, notes=[STOPPED])
     why = 'Your cell <code>double</code> stopped with NameError: no such thing'
     assert re.search(f'<td class="why"[^>]*>{why}</td>', html)
@@ -81,14 +81,14 @@ def test_what_stopped_the_students_cell_comes_first_where_points_are_missing(cou
     assert 'Note: ' not in html
 
 
-def test_what_stopped_it_is_told_in_the_students_language(course):
+def test_the_error_of_a_cell_is_shown_in_the_students_language(course):
     notebook = answered(course, RIGHT)
     notebook.metadata[KEY] = {'language': 'zh_CN'}
     html = feedback(course, 'bea', notebook, reasons=UNDEFINED, notes=[STOPPED])
     assert html.count('你的单元格 <code>double</code> 停止了：NameError: no such thing') == 2
 
 
-def test_what_stopped_it_is_a_note_where_no_points_are_missing(course):
+def test_the_error_of_a_cell_is_only_a_note_if_no_points_are_missing(course):
     html = feedback(course, 'bea', answered(course, RIGHT), notes=[STOPPED])
     assert 'Note: your cell <code>double</code> stopped with NameError' in html
     assert 'Fix that first' not in html
@@ -101,12 +101,12 @@ def test_what_stopped_it_is_a_note_where_no_points_are_missing(course):
         ('double(2) is 5', 'double(2) is 5'),  # a name in the code keeps its small letter
     ],
 )
-def test_a_reason_in_other_words_is_shown_whole(course, reason, shown):
+def test_a_reason_that_does_not_begin_with_expected_is_shown_whole(course, reason, shown):
     html = feedback(course, 'ada', answered(course, RIGHT), reasons={'double-check': reason})
     assert re.search(f'<td class="why"[^>]*>{re.escape(shown)}</td>', html)
 
 
-def test_a_title_is_true_of_what_failed():
+def test_the_title_of_a_check_fits_the_part_that_failed():
     """The first two predictions may be right, and others wrong."""
     cell = new_code_cell(
         '"""The first two are right"""\ncheck()',
@@ -122,7 +122,7 @@ def test_a_title_is_true_of_what_failed():
     assert page_parts._check(cell).title == 'The others are right'
 
 
-def test_what_to_try_is_what_the_check_has_told_whatever_colons_are_in_it():
+def test_advice_with_colons_is_separated_from_the_rest_of_a_reason():
     reason = 'expected {1: 2}, saw E: no: its thread raised E: no, so fix that first: it ended'
     hint = 'its thread raised E: no, so fix that first: it ended'
     assert page_parts._parts(reason, hint, 'en') == {
@@ -132,7 +132,7 @@ def test_what_to_try_is_what_the_check_has_told_whatever_colons_are_in_it():
     }
 
 
-def test_no_hidden_test_is_shown_but_its_open_part_is(course):
+def test_the_open_part_of_a_check_is_shown_and_its_hidden_test_is_not(course):
     html = feedback(course, 'ada', answered(course, RIGHT))
     graded = (course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb').read_text()
     assert 'canary' in graded
@@ -149,7 +149,7 @@ def test_a_traceback_that_quotes_a_test_is_not_shown(course):
     assert 'canary' not in html
 
 
-def test_nothing_that_a_student_wrote_runs(course):
+def test_no_script_of_a_student_runs_on_a_page(course):
     outputs = [
         new_output('stream', text=SCRIPT),
         new_output('display_data', {'text/html': SCRIPT, 'text/plain': SCRIPT}),
@@ -170,7 +170,7 @@ def test_nothing_that_a_student_wrote_runs(course):
     assert "default-src 'none'" in html
 
 
-def test_nothing_on_a_page_is_unseen_or_turns_text_around(course):
+def test_invisible_and_direction_changing_characters_are_escaped_on_a_page(course):
     hidden = '\u202egnorw\u2066\u200b\x1b'
     notebook = answered(
         course,
@@ -208,21 +208,21 @@ def test_an_unreadable_submission_has_a_page_with_its_reason(course):
     assert '0 of 5 points' in html
 
 
-def test_what_was_restored_is_told(course):
+def test_a_restored_cell_is_mentioned_on_the_page(course):
     notebook = answered(course, RIGHT)
     del notebook.cells[6]
     html = feedback(course, 'ada', notebook)
     assert 'the cell <code>double-check</code> was missing: it was put back' in html
 
 
-def test_what_a_person_has_to_read_waits_and_is_no_zero(course):
+def test_a_written_answer_waits_for_the_instructor_and_is_not_scored_zero(course):
     html = feedback(course, 'ada', answered(course, RIGHT, explained='It **is** so.'))
     assert '<strong>is</strong>' in html
     assert '– of 2' in html
     assert 'Your instructor will read this.' in html
 
 
-def test_writing_again_changes_no_page(course):
+def test_writing_feedback_again_changes_no_page(course):
     feedback(course, 'ada', answered(course, RIGHT))
     said = []
     assert write_feedback(course, say=said.append)
@@ -234,8 +234,8 @@ def test_a_course_without_submissions_has_no_pages(tmp_path):
 
 
 @pytest.mark.slow
-def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
-    """For each of these formulas, the rest of the text is searched for its end."""
+def test_text_that_takes_too_long_to_convert_is_shown_as_typed(course, monkeypatch):
+    """For each of these formulas, the converter searches the rest of the text for its end."""
     monkeypatch.setattr(module, 'LIMITS', Limits(cpu_sec=2))
     html = feedback(course, 'eve', answered(course, RIGHT, explained=r'<b>\begin{a}' * 40_000))
     assert 'Your text is shown as you typed it: it takes over 2 s of processor time' in html
@@ -243,7 +243,7 @@ def test_text_that_takes_for_ever_is_shown_as_it_was_typed(course, monkeypatch):
     assert ' of 5 points' in html
 
 
-def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
+def test_a_page_that_cannot_be_made_does_not_stop_other_pages(course, monkeypatch):
     def too_hard(function, notebook, about, *more, limits):
         if about['student'] == 'eve':
             raise ParsingFailed('it takes too much\x1b[2J memory')
@@ -259,7 +259,7 @@ def test_a_page_that_can_t_be_made_at_all_costs_no_other(course, monkeypatch):
     assert 'eve' not in {page.parts[-3] for page in pages}
 
 
-def test_who_is_in_the_database_no_longer_has_no_page_and_costs_no_other(course):
+def test_a_student_removed_from_the_database_is_reported_and_has_no_page(course):
     feedback(course, 'leaves', answered(course, RIGHT))
     with connected(course.db_url) as book:
         book.remove_student('leaves')
@@ -276,7 +276,7 @@ def test_who_is_in_the_database_no_longer_has_no_page_and_costs_no_other(course)
     shutil.rmtree(folder)
 
 
-def test_what_nbgrader_needs_to_release_a_page_lies_beside_it(course):
+def test_files_that_nbgrader_needs_to_release_feedback_are_beside_the_page(course):
     """Its `release_feedback` reads both files, and stops if one is missing."""
     graded = course.folder('autograded', 'ada', TOY)
     feedback(course, 'ada', answered(course, RIGHT))
@@ -290,7 +290,7 @@ def test_what_nbgrader_needs_to_release_a_page_lies_beside_it(course):
     assert (page.parent / 'submission_secret.txt').read_text() == 'aa'
 
 
-def test_of_many_pages_each_is_there_and_told_in_order(course, tmp_path):
+def test_many_pages_are_written_and_reported_in_order(course, tmp_path):
     course = Course(root=course.root, gradebook=tmp_path / 'gradebook')
     register(course, TOY)
     students = [f's{number:02}' for number in range(3 * AT_ONCE)]
@@ -316,10 +316,10 @@ def test_of_many_pages_each_is_there_and_told_in_order(course, tmp_path):
         f'{TOY} of {students[2]} has no page of feedback: the graded notebook {damaged} is '
         f'damaged: run ./course grade --student {students[2]}, which grades it again',
     ]
-    assert pages[2].read_bytes() == whole[pages[2]]  # that of before
+    assert pages[2].read_bytes() == whole[pages[2]]  # the page of the run before
 
 
-def test_what_fails_on_a_page_says_which(course, tmp_path, monkeypatch):
+def test_an_error_while_writing_a_page_names_the_page(course, tmp_path, monkeypatch):
     course = Course(root=course.root, gradebook=tmp_path / 'gradebook')
     register(course, TOY)
     submission = handed_in(course, 'ada')
@@ -330,7 +330,7 @@ def test_what_fails_on_a_page_says_which(course, tmp_path, monkeypatch):
     assert raised.value.__notes__ == [f'This was the page of ada for {TOY}.']
 
 
-def test_who_is_told_to_stop_waits_for_no_page():
+def test_an_interrupt_waits_for_no_page():
     with pytest.raises(KeyboardInterrupt), module._threads() as threads:  # noqa: PT012
         work = threads.submit(parse, 'time:sleep', 60, limits=Limits(wall_sec=20))
         later = [threads.submit(parse, 'os:getpid') for _ in range(5 * AT_ONCE)]

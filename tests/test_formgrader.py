@@ -54,7 +54,7 @@ def course(tmp_path, monkeypatch):
 
 @pytest.fixture
 def lab(course, tmp_path):
-    """What docs/for-instructors.md says: `.venv/bin/jupyter lab` in the course's folder.
+    """`.venv/bin/jupyter lab` in the course's folder, as docs/for-instructors.md says.
 
     Gives its address.
     """

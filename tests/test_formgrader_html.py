@@ -9,17 +9,17 @@ from grader.common.parsing import Limits
 from grader.report import formgrader
 
 FORMULAS = r'\begin{a}' * 40_000
-"""Each is searched for its end, from each of them on."""
+"""For each of these formulas, the rest of the text is searched for its end."""
 
 
 def shown(*cells):
-    """What the exporter that nbgrader_config.py sets up makes of cells."""
+    """Return the HTML of cells, from the exporter that nbgrader_config.py sets up."""
     options = {'filters': formgrader.FILTERS, 'sanitize_html': True}
     exporter = HTMLExporter(config=Config({'HTMLExporter': options}))
     return exporter.from_notebook_node(nbformat.v4.new_notebook(cells=list(cells)))[0]
 
 
-def test_text_code_and_output_look_as_they_are_meant():
+def test_text_code_and_output_are_rendered_without_scripts():
     code = nbformat.v4.new_code_cell('def f():\n    pass')
     data = {'text/html': '<b onclick="x()">bold</b><script>x()</script>'}
     code.outputs = [nbformat.v4.new_output('display_data', data=data)]
@@ -37,7 +37,7 @@ def test_text_code_and_output_look_as_they_are_meant():
 @pytest.mark.parametrize(
     'text', [FORMULAS, '<a ' * 60_000, '![a](files/' * 60_000], ids=['math', 'tags', 'files']
 )
-def test_text_that_takes_for_ever_is_shown_as_it_was_typed(text, monkeypatch):
+def test_text_that_takes_too_long_to_convert_is_shown_as_typed(text, monkeypatch):
     monkeypatch.setattr(formgrader, 'LIMITS', Limits(cpu_sec=1))
     output = nbformat.v4.new_output('display_data', data={'text/html': text})
     html = shown(
@@ -50,7 +50,7 @@ def test_text_that_takes_for_ever_is_shown_as_it_was_typed(text, monkeypatch):
     assert '<a <a' not in html
 
 
-def test_what_all_submissions_have_is_made_once(monkeypatch):
+def test_code_that_submissions_share_is_highlighted_only_once(monkeypatch):
     asked = []
     monkeypatch.setattr(formgrader, 'parse', lambda *args, limits: asked.append(args) or 'x')
     for _ in range(3):

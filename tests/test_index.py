@@ -37,7 +37,7 @@ def test_each_lesson_has_its_row_with_title_exercises_and_points():
     assert f'| **{sum(minutes)}** |' in TEXT
 
 
-def test_each_quiz_has_its_row_behind_its_half():
+def test_each_quiz_has_its_row_after_the_lessons_of_its_half():
     links = [link for _, link, *_ in ROWS]
     assert [link for _, link, *_ in QUIZ_ROWS] == ['quiz_topics.ipynb', 'quiz_services.ipynb']
     order = re.findall(r'^\| \[.+?\]\((.+?)\)', TEXT, re.MULTILINE)
@@ -47,7 +47,7 @@ def test_each_quiz_has_its_row_behind_its_half():
     assert [link for link in order if 'quiz' not in link] == links
 
 
-def test_its_metadata_says_who_checks_each_exercise():
+def test_the_metadata_of_the_index_says_how_each_exercise_is_checked():
     contents = INDEX.metadata.my_robot_basics.contents
     assert [each.lesson for each in contents] == Course().assignments()
     kinds = {each.name: each.checked for lesson in contents for each in lesson.exercises}
@@ -57,7 +57,7 @@ def test_its_metadata_says_who_checks_each_exercise():
     assert [*kinds] == listed
 
 
-def test_an_exercise_that_is_checked_only_at_grading_is_known_as_such():
+def test_an_exercise_without_visible_checks_is_marked_as_checked_at_grading():
     def kinds():
         return [each['checked'] for each in progress_row(TOY, lesson)['exercises']]
 
@@ -70,11 +70,11 @@ def test_an_exercise_that_is_checked_only_at_grading_is_known_as_such():
 
 
 @pytest.mark.parametrize('link', re.findall(r'\]\((.+?)\)', TEXT))
-def test_its_links_lead_somewhere(link):
+def test_the_links_of_the_index_lead_to_existing_files(link):
     assert (ROOT / 'notebooks' / link).is_file()
 
 
-def test_lessons_say_where_the_answer_goes_in_the_words_of_the_index():
+def test_lessons_mark_the_place_of_answers_in_the_words_of_the_index():
     released = ''.join(path.read_text() for path in ROOT.glob('notebooks/[0-9]*/*.ipynb'))
     stubs = re.findall(r'`(YOUR [A-Z ]+)`', TEXT)
     assert len(stubs) == 2
@@ -82,7 +82,7 @@ def test_lessons_say_where_the_answer_goes_in_the_words_of_the_index():
 
 
 @pytest.mark.parametrize('page', ['terms.md', 'what_next.md'])
-def test_the_other_pages_are_a_click_away_and_lead_back(page):
+def test_the_index_links_to_each_further_page_and_is_linked_back(page):
     assert f']({page})' in TEXT
     assert '](index.ipynb)' in (ROOT / 'notebooks' / page).read_text()
 
@@ -100,7 +100,7 @@ def test_long_items_stand_in_one_line_and_break_no_table(tmp_path):
     assert r'| double a number, whatever it is; say what \|x\| is |' in row
 
 
-def test_only_pages_that_are_there_are_given_out_and_linked(tmp_path):
+def test_only_existing_pages_are_released_and_linked(tmp_path):
     course = make_course(tmp_path)
     write_source(course, toy_lesson())
     (course.root / 'solutions/what_next.md').write_text('# What next\n')

@@ -1,4 +1,4 @@
-"""What lesson 10 says of building interfaces: with a compiler, without one, and of each line."""
+"""Lesson 10 on building interfaces: with a compiler, without one, and the need of each line."""
 
 import shutil
 import sys
@@ -44,7 +44,7 @@ def outputs(cell_id):
 
 
 @pytest.mark.starts
-def test_without_a_compiler_the_cell_says_what_is_missing_and_goes_on(folder, tmp_path):
+def test_the_build_cell_reports_a_missing_compiler_and_continues(folder, tmp_path):
     programs = programs_without_compilers(tmp_path / 'programs')
     said = bash(folder, BUILD, PATH=f'{sys.prefix}/bin:{programs}').stdout
     assert f'{workspace.INTERFACES} cannot be built on this machine: ' in said
@@ -52,7 +52,7 @@ def test_without_a_compiler_the_cell_says_what_is_missing_and_goes_on(folder, tm
     assert said.endswith(f'in use: {sys.prefix}/share/{workspace.INTERFACES}\n{HASH}\n')
 
 
-def test_what_is_stored_is_that_of_a_machine_with_a_compiler():
+def test_the_stored_outputs_are_those_of_a_machine_with_a_compiler():
     assert outputs('build').endswith(
         f'in use: $ROS_WS/install/{workspace.INTERFACES}/share/{workspace.INTERFACES}\n{HASH}\n'
     )
@@ -61,7 +61,7 @@ def test_what_is_stored_is_that_of_a_machine_with_a_compiler():
 
 @pytest.mark.slow
 @with_a_compiler
-def test_with_a_compiler_the_cell_uses_what_it_has_built(folder):
+def test_the_build_cell_uses_its_own_build_if_there_is_a_compiler(folder):
     said = bash(folder, BUILD).stdout
     lines = said.splitlines()
     assert 'Summary: 1 package finished' in said
@@ -70,7 +70,7 @@ def test_with_a_compiler_the_cell_uses_what_it_has_built(folder):
 
 @pytest.mark.slow
 @with_a_compiler
-def test_the_answer_is_a_package_and_each_line_is_needed(folder):
+def test_the_answer_of_lesson_10_builds_and_each_of_its_lines_is_needed(folder):
     """Lesson 10's table: CMake refuses without the group; a file that is not named is missing."""
     package = make_package(folder)
     xml, cmake = package / 'package.xml', package / 'CMakeLists.txt'

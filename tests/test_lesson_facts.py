@@ -1,4 +1,4 @@
-"""What a lesson states in passing and does not show: each fact is seen here."""
+"""Facts that lessons state in passing and do not show: each is tested here."""
 
 import os
 import re
@@ -104,8 +104,8 @@ def test_spin_does_not_return_and_a_call_in_a_callback_never_does(waits_in_a_cal
 
 
 @pytest.mark.starts
-def test_the_callbacks_of_a_node_exclude_each_other_unless_told_otherwise():
-    """Lesson 4; all of them are then in this one group."""
+def test_callbacks_of_a_node_are_in_one_mutually_exclusive_group_by_default():
+    """Lesson 4; the callbacks of a node exclude each other unless they get other groups."""
     with Watcher() as watcher:
         node = watcher.node
         made = [node.create_timer(9.0, print), node.create_subscription(String, '/s', print, 1)]
@@ -114,7 +114,7 @@ def test_the_callbacks_of_a_node_exclude_each_other_unless_told_otherwise():
 
 
 @pytest.mark.starts
-def test_both_ends_get_an_event_when_more_is_requested_than_offered():
+def test_publisher_and_subscription_get_an_event_for_incompatible_qos():
     """Lesson 6: incompatible QoS is an event for the publisher, too."""
     told = set()
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -128,7 +128,7 @@ def test_both_ends_get_an_event_when_more_is_requested_than_offered():
 
 
 @pytest.mark.starts
-def test_two_types_on_one_topic_never_match_and_no_event_tells():
+def test_two_types_on_one_topic_never_match_and_cause_no_event():
     """Lesson 1: in two programs (contexts) nobody warns; a third end shows that they have met."""
     told = []
     offers = PublisherEventCallbacks(incompatible_type=told.append, incompatible_qos=told.append)
@@ -152,7 +152,7 @@ def test_two_types_on_one_topic_never_match_and_no_event_tells():
 
 @pytest.mark.starts
 def test_a_message_does_not_say_who_sent_it():
-    """Lesson 1; nor does what rclpy tells a callback beside the message."""
+    """Lesson 1; nor does the message info that rclpy passes to a callback."""
     told = []
     with Watcher() as watcher:
         publisher = watcher.node.create_publisher(String, '/_said', 1)
@@ -165,7 +165,7 @@ def test_a_message_does_not_say_who_sent_it():
     assert all('timestamp' in word or 'sequence_number' in word for word in words[1:]), words
 
 
-def test_the_window_of_hz_counts_gaps(capsys):
+def test_the_window_of_topic_hz_counts_gaps_between_messages(capsys):
     """Lesson 5; four messages, half a second apart, have three gaps."""
     now_nsec = 10**9
     rate = Rate(lambda: now_nsec, window_size=10)
@@ -177,7 +177,7 @@ def test_the_window_of_hz_counts_gaps(capsys):
 
 
 @pytest.mark.parametrize('tool', ['launch', 'tf2_ros', 'rosbag2_py', 'urdf_parser_py', 'rviz2'])
-def test_what_comes_next_is_not_in_the_course(tool):
+def test_tools_that_come_after_the_course_are_not_installed(tool):
     """What next: these tools need a ROS 2 of one's own."""
     assert find_spec(tool) is None
     assert shutil.which(tool, path=str(Path(sys.executable).parent)) is None
@@ -188,8 +188,8 @@ IN_CHINESE = {'simulation': '仿真', 'bags': 'bag 文件', 'several machines': 
 
 
 @pytest.mark.parametrize('what', LEFT_OUT)
-def test_what_is_left_out_has_its_row_and_link_in_what_next(what):
-    """There are no packages of it; a student who looks for it is told where to read on."""
+def test_each_left_out_subject_has_a_row_and_a_link_in_what_next(what):
+    """The course has no packages of the subject, and the page says where to read on."""
     for folder, name in ('.', what), ('zh_CN', IN_CHINESE.get(what, what)):
         page = (ROOT / 'notebooks' / folder / 'what_next.md').read_text(encoding='utf-8')
         (row,) = (line for line in page.splitlines() if line.startswith(f'| {name} |'))
@@ -201,8 +201,8 @@ def test_a_lesson_looks_for_nodes_on_its_own_machine_only():
     assert os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
 
 
-def test_an_action_is_made_with_rclpy_action():
-    """Lesson 7; an action can be cancelled, and tells of its progress."""
+def test_rclpy_action_can_cancel_goals_and_publish_feedback():
+    """Lesson 7; an action can be cancelled, and publishes its progress."""
     assert callable(ClientGoalHandle.cancel_goal_async)
     assert callable(ServerGoalHandle.publish_feedback)
 
@@ -233,7 +233,7 @@ def test_a_goal_that_is_being_cancelled_ends_as_its_server_says(end):
 
 @pytest.mark.starts
 def test_a_rejected_goal_never_has_a_state():
-    """Lesson 9: there is nothing of it on the status topic, and there is of the next one."""
+    """Lesson 9: the status topic has no state of it, but has one of the next goal."""
     told = []
 
     async def execute(handle):
@@ -261,8 +261,8 @@ def test_a_rejected_goal_never_has_a_state():
 
 @pytest.mark.starts
 @pytest.mark.parametrize('waits', ['execute', 'a timer'])
-def test_an_execute_callback_belongs_to_no_group(waits):
-    """Lesson 9: while it awaits, others run; none does while a coroutine of lesson 8 awaits."""
+def test_callbacks_run_while_an_execute_callback_awaits_but_not_while_a_timer_does(waits):
+    """Lesson 9: an execute callback is in no group; a coroutine of lesson 8 blocks its own."""
     started, ticks = [], []
 
     async def wait(handle=None):
@@ -288,8 +288,8 @@ def test_an_execute_callback_belongs_to_no_group(waits):
 
 
 @pytest.mark.starts
-def test_a_callback_that_decides_does_not_know_whether_another_one_refuses():
-    """Lesson 11: one says yes, another one no; the value stays, and nobody acts."""
+def test_a_parameter_callback_does_not_know_whether_another_one_refuses():
+    """Lesson 11: one callback accepts, another one refuses; the value stays, and none acts."""
     called = []
 
     def judge(name, successful):
@@ -309,7 +309,7 @@ def test_a_callback_that_decides_does_not_know_whether_another_one_refuses():
         assert node.get_parameter('level').value == 40
 
 
-def test_to_a_robot_go_the_packages_of_the_course_that_the_player_needs():
+def test_lesson_12_names_the_course_packages_that_a_robot_needs_for_the_player():
     """Lesson 12: rosdep knows none of them."""
     (robot,) = (
         cell.source for cell in read('solutions', '12_package').cells if cell.id == 'robot'

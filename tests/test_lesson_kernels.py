@@ -1,4 +1,4 @@
-"""A kernel that nbval cannot start leaves its last words, and needs no port of the machine."""
+"""A kernel of nbval needs no port, and is reported with its output if it does not start."""
 
 import json
 
@@ -17,7 +17,7 @@ def prepared(monkeypatch, tmp_path):
 
 
 @pytest.mark.starts
-def test_a_kernel_that_does_not_start_leaves_its_last_words(tmp_path):
+def test_a_kernel_that_does_not_start_is_reported_with_its_last_output(tmp_path):
     spec = tmp_path / 'kernels/broken/kernel.json'
     spec.parent.mkdir(parents=True)
     command = ['sh', '-c', 'echo no room is left >&2; exit 3']
