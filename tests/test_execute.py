@@ -21,7 +21,7 @@ from grader.notebook.restore import KEY
 
 
 @pytest.mark.slow
-def test_each_exercise_costs_only_itself(monkeypatch):
+def test_a_failing_exercise_does_not_affect_other_exercises(monkeypatch):
     monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     answers = {
         'good': GOOD,
@@ -108,7 +108,7 @@ STRANGE = {
 
 
 @pytest.mark.parametrize(('own', 'outcome'), STRANGE.values(), ids=STRANGE)
-def test_strange_ways_to_answer(monkeypatch, own, outcome):
+def test_each_unusual_way_to_answer_gets_its_verdict(monkeypatch, own, outcome):
     monkeypatch.setattr(budget, 'STUDENT_CELL_TIMEOUT_SEC', 4.0)
     execution = execute(handed_in(lesson('a'), **own))
     assert outcomes(execution)['a-check'] == outcome
@@ -133,7 +133,7 @@ def test_a_function_may_use_names_that_the_lesson_has_shown(demos, answer):
 @pytest.mark.parametrize(
     ('name', 'is_shown'), [('prnit', False), ('shown', True), ('nothing_of_it', False)]
 )
-def test_what_the_lesson_shows_is_run_for_a_name_that_it_may_bind_alone(name, is_shown):
+def test_a_demo_cell_is_run_only_for_an_undefined_name_that_its_code_mentions(name, is_shown):
     source = lesson('a')
     shown = new_code_cell('if 0 < 1:\n    print("shown")', metadata={'tags': ['demo']})
     source.cells.insert(1, shown)
@@ -160,7 +160,7 @@ BELOW = {
 
 @pytest.mark.parametrize(('answer', 'start'), BELOW.values(), ids=BELOW)
 def test_a_helper_may_stand_below_the_cell_that_starts_the_answer(answer, start):
-    """As the student had it who wrote it there, and started the answer again."""
+    """For the student it worked: they ran the helper, and started the answer again."""
     helpers = 'def two(): return 2\ndef same(x): return x\nTwo = int'
     source = lesson('a', check=IS_TWO)
     source.cells.insert(3, marked('a-run', start.replace('double', 'double_a')))
@@ -201,7 +201,7 @@ def test_a_notebook_that_could_not_be_read_fails_without_running(monkeypatch):
     assert determine_grade(cells_of(execution)['a-check']) == (0, 2.0)
 
 
-def test_it_works_inside_a_running_event_loop(monkeypatch):
+def test_execute_works_inside_a_running_event_loop(monkeypatch):
     monkeypatch.setattr(module, 'GradingRooms', type('R', (FakeRooms,), {'checks': [ended()]}))
 
     async def formgrader():
@@ -211,7 +211,7 @@ def test_it_works_inside_a_running_event_loop(monkeypatch):
 
 
 @pytest.mark.parametrize('inside_a_loop', [False, True])
-def test_ctrl_c_closes_the_rooms_and_ends(monkeypatch, inside_a_loop):
+def test_ctrl_c_closes_the_rooms_and_ends_the_execution(monkeypatch, inside_a_loop):
     events = []
 
     class Endless(FakeRooms):

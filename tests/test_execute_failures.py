@@ -69,7 +69,7 @@ DOUBTS = {
 
 
 @pytest.mark.parametrize('doubt', DOUBTS.values(), ids=DOUBTS)
-def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gains_nothing(
+def test_a_doubtful_failure_is_judged_twice_and_using_up_the_time_gains_nothing(
     monkeypatch, doubt
 ):
     checks, is_machine_busy, used_sec, outcome, opened, *in_checks = doubt
@@ -89,7 +89,7 @@ def test_what_others_may_be_to_blame_for_is_looked_at_again_and_burning_time_gai
         assert 'a person has to look at it: the machine was too busy' in verdict.reason
 
 
-def test_a_machine_is_busy_only_where_processes_wait_without_the_answer(monkeypatch):
+def test_a_machine_is_busy_only_if_processes_wait_while_no_answer_runs(monkeypatch):
     monkeypatch.setattr(second_look, 'BUSY_LOOK_SEC', 0.05)
     for share, crowd in [(0.0, False), (0.2, False), (0.9, True)]:
         monkeypatch.setattr(pressure, 'stalled_sec', lambda share=share: share * time.monotonic())
@@ -97,7 +97,7 @@ def test_a_machine_is_busy_only_where_processes_wait_without_the_answer(monkeypa
         assert asyncio.run(second_look.is_machine_busy()) is crowd
 
 
-def test_a_failure_in_one_exercise_leaves_the_others_their_verdicts(monkeypatch):
+def test_a_failure_in_one_exercise_leaves_the_verdicts_of_other_exercises(monkeypatch):
     class DeadForOne(FakeRooms):
         checks = []
 

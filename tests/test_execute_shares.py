@@ -15,7 +15,9 @@ from grader.sandbox.limits import MAX_RESULT_PARTS
 
 
 @pytest.mark.parametrize(('notebooks', 'most'), [(1, 2), (2, 3), (3, 4)])
-def test_exercises_run_side_by_side_where_no_other_notebook_does(monkeypatch, notebooks, most):
+def test_exercises_run_side_by_side_unless_another_notebook_runs_already(
+    monkeypatch, notebooks, most
+):
     at_work, counts = [], []
 
     class Counting(FakeRooms):
@@ -34,7 +36,7 @@ def test_exercises_run_side_by_side_where_no_other_notebook_does(monkeypatch, no
 
     monkeypatch.setattr(module, 'GradingRooms', Counting)
     first, *_ = asyncio.run(several())
-    # the first notebook has begun before the others, which take one exercise after the other
+    # the first notebook began before the others, which run one exercise after the other
     assert max(counts) == most
     assert [each.grade_id for each in first.verdicts[:3]] == ['a-check', 'b-check', 'c-check']
 
@@ -58,7 +60,7 @@ def test_student_cells_share_one_budget(monkeypatch):
     assert min(given) >= 0.1  # a cell is never given no time at all
 
 
-def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():
+def test_a_notebook_keeps_limited_output_and_mentions_the_rest():
     space, cell = module._OutputSpace(2_000), [new_output('stream', text='x' * 400)]
     assert space.fit(cell) == space.fit(cell) == cell
     [output] = space.fit(cell)
@@ -66,13 +68,13 @@ def test_a_notebook_keeps_so_much_output_and_says_so_of_the_rest():
     assert space.fit([]) == []
 
 
-def test_of_many_small_outputs_few_are_kept():
+def test_only_some_of_many_small_outputs_are_kept():
     space, cell = module._OutputSpace(), [new_output('stream', text='x')] * 1_000
     kept = sum(len(space.fit(cell)) == 1_000 for _ in range(40))
     assert kept * len(cell) <= 8_000
 
 
-def test_of_outputs_in_many_parts_no_more_are_kept_than_a_result_may_have():
+def test_outputs_with_many_parts_are_kept_up_to_the_limit_of_a_result():
     space = module._OutputSpace()
     parts = new_output('display_data', {}, metadata={f'{n}': {} for n in range(10_000)})
     kept = sum(space.fit([parts]) == [parts] for _ in range(40))

@@ -1,4 +1,4 @@
-"""A forked kernel is the kernel that would have been started: no more, no less."""
+"""A forked kernel is like a started one, and shares nothing with other kernels."""
 
 import ast
 import functools
@@ -136,11 +136,11 @@ print(ip.ipython_dir, ip.profile_dir.location, ip.history_manager.enabled, ip.us
 print(sorted((e, [c.__qualname__ for c in cs]) for e, cs in ip.events.callbacks.items()))
 """,
 }  # fmt: skip
-"""What a cell may find out about the kernel that it runs in."""
+"""Code by which a cell may look at the kernel that it runs in."""
 
 
 @pytest.mark.parametrize('code', LOOKS.values(), ids=LOOKS)
-def test_a_forked_kernel_is_as_a_started_one(forked, started, said, code):
+def test_a_forked_kernel_looks_like_a_started_one(forked, started, said, code):
     assert said(forked, code).splitlines() == said(started, code).splitlines()
 
 
@@ -170,7 +170,7 @@ def test_a_forked_kernel_has_imported_more_but_nothing_of_the_grader(forked, sta
     assert set(ast.literal_eval(said(started, MODULES))) <= in_forked
     assert {'rclpy', 'numpy', 'matplotlib.figure', 'sensor_msgs.msg'} <= in_forked
     assert [name for name in in_forked if name.split('.')[0] in ('grader', 'nbgrader')] == []
-    # neither under a name that a student may give to a module
+    # nor under bare names, which modules of students may have as well
     folders = ast.literal_eval(said(forked, FOLDERS))
     assert [folder for folder in folders if Path(folder).is_relative_to(ROOT / 'grader')] == []
 
@@ -195,7 +195,7 @@ def test_a_forked_kernel_plots_as_a_started_one(loop, forked, started):
     assert first[1].data['image/png'] == second[1].data['image/png']
 
 
-# -- nothing in common ----------------------------------------------------------------------------
+# -- nothing is shared between kernels ------------------------------------------------------------
 
 CHANCE = """
 import random, numpy, uuid, tempfile, secrets, os, string
@@ -205,7 +205,7 @@ print(random.random(), numpy.random.rand(), numpy.random.default_rng().random(),
 """
 
 
-def test_no_two_kernels_have_chance_in_common(forked, own, said):
+def test_two_kernels_draw_different_random_numbers(forked, own, said):
     assert not set(said(forked, CHANCE).split()) & set(said(own, CHANCE).split())
 
 
@@ -224,7 +224,7 @@ def memory_of(process):
                 continue
 
 
-def test_what_a_test_room_is_told_is_in_no_server_and_in_no_later_kernel(loop, said):
+def test_the_secrets_of_a_test_room_are_in_no_server_and_no_later_kernel(loop, said):
     sandbox, told = loop.run(opened(room='test', seed=SEED))
     (later_sandbox, later) = loop.run(opened(room='test', seed='another'))
     try:
@@ -258,7 +258,7 @@ print([hasattr(m, 'hostile') for m in (builtins, rclpy, numpy, sys)], random.ran
 """
 
 
-def test_what_a_student_does_to_a_kernel_stays_in_it(loop, forked, own, said):
+def test_changes_made_in_one_kernel_do_not_reach_other_kernels(loop, forked, own, said):
     said(own, HOSTILE)
     assert 'True' in said(own, HARMED)
     assert server_of(own) == server_of(forked)
@@ -307,7 +307,7 @@ def test_root_gives_the_kernels_of_each_slot_a_user_of_its_own(forked, own):
     assert {0} not in users
 
 
-# -- its life -------------------------------------------------------------------------------------
+# -- the end of a kernel --------------------------------------------------------------------------
 
 
 def pids(network):

@@ -26,7 +26,7 @@ def node():
 
 
 @pytest.mark.starts
-def test_a_name_without_a_node_is_gone(monkeypatch, node):
+def test_a_name_on_the_graph_without_a_node_counts_as_gone(monkeypatch, node):
     names = graphs.node_names
     monkeypatch.setattr(graphs, 'node_names', lambda node: ['/ghost', *names(node)])
     with Watcher() as watcher:
@@ -54,9 +54,10 @@ def namesakes():
 
 
 @pytest.mark.starts
-def test_what_a_node_serves_is_found_though_another_of_its_name_has_nothing(namesakes):
-    """As a node that has ended and stays on the graph: asked for what a node has, rmw looks into
-    one of that name alone.
+def test_services_and_actions_of_two_nodes_with_one_name_are_all_found(namesakes):
+    """If two nodes have one name, rmw lists the services of only one of them.
+
+    The other one may have ended and still be on the graph.
     """
     first, second = namesakes
     made = [first.create_service(SolveIK, '/solve_ik', lambda request, response: response)]
@@ -95,7 +96,7 @@ def test_what_a_node_serves_is_found_though_another_of_its_name_has_nothing(name
         *[(each, each) for each in ('', 'word', 'dds_::Word_', '::')],
     ],
 )
-def test_a_type_that_no_program_of_ros_has_is_named_as_dds_does(monkeypatch, dds_type, type_):
+def test_a_type_that_is_none_of_ros_keeps_its_dds_name(monkeypatch, dds_type, type_):
     """Any text may be the type of a reader of requests."""
     info = SimpleNamespace(node_name='a', node_namespace='/', topic_type=dds_type)
     monkeypatch.setattr(services, 'subscription_infos', lambda node, name, is_dds: [info])
@@ -110,7 +111,9 @@ def test_a_type_that_no_program_of_ros_has_is_named_as_dds_does(monkeypatch, dds
     [(['/a'], ['/a'], False), (['/a'], ['/b'], True), (['/b'], ['/a'], True), ([], [], True)],
     ids=['a node', 'a name alone', 'a publisher alone', 'neither'],
 )
-def test_a_node_has_a_name_and_a_publisher(monkeypatch, names, publishers, is_gone):
+def test_a_node_is_gone_unless_it_has_a_name_and_a_publisher(
+    monkeypatch, names, publishers, is_gone
+):
     monkeypatch.setattr(graphs, 'node_names', lambda node: names)
     monkeypatch.setattr(graphs, 'publisher_infos', lambda node, topic_name: publishers)
     monkeypatch.setattr(graphs, 'full_name', lambda info: info)
@@ -118,8 +121,10 @@ def test_a_node_has_a_name_and_a_publisher(monkeypatch, names, publishers, is_go
 
 
 @pytest.mark.parametrize(('living', 'why'), [(['/a'], ''), ([], callbacks.ENDED)])
-def test_why_a_node_publishes_no_more_is_not_that_its_name_stays(monkeypatch, living, why):
-    """A busy machine left the name of a node that had destroyed itself, and another reason."""
+def test_a_node_whose_name_stays_without_a_publisher_is_reported_as_ended(
+    monkeypatch, living, why
+):
+    """On a busy machine, the name of a node that had destroyed itself stayed on the graph."""
     monkeypatch.setattr(graphs, 'node_names', lambda node: ['/a'])
     monkeypatch.setattr(graphs, 'publisher_infos', lambda node, topic_name: living)
     monkeypatch.setattr(graphs, 'full_name', lambda info: info)

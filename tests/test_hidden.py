@@ -69,7 +69,7 @@ def found_in(text):
 
 
 @pytest.mark.slow
-def test_no_log_and_no_line_on_the_terminal_holds_any(left):
+def test_logs_and_terminal_output_hold_no_hidden_test(left):
     _, said = left
     assert 'wrong' in said
     assert 'interrupts' in said
@@ -77,7 +77,7 @@ def test_no_log_and_no_line_on_the_terminal_holds_any(left):
 
 
 @pytest.mark.slow
-def test_no_file_that_tells_of_the_class_holds_any(left):
+def test_exports_feedback_and_reports_hold_no_hidden_test(left):
     course, _ = left
     seeds = [course.seed(TOY, student) for student in ANSWERS]
     told = [course.root / 'export.csv', course.gradebook / 'scores.csv']
@@ -94,7 +94,7 @@ def test_no_file_that_tells_of_the_class_holds_any(left):
 
 
 @pytest.mark.slow
-def test_nothing_that_students_are_given_holds_any(left):
+def test_released_files_hold_no_hidden_test(left):
     course, _ = left
     given = [path for path in (course.root / 'notebooks').rglob('*') if path.is_file()]
     assert course.release_path(TOY) in given
@@ -103,11 +103,11 @@ def test_nothing_that_students_are_given_holds_any(left):
 
 
 @pytest.mark.slow
-def test_no_output_and_no_reason_in_the_gradebook_holds_any(left):
+def test_outputs_and_reasons_in_the_gradebook_hold_no_hidden_test(left):
     course, _ = left
     for student in ANSWERS:
         path = course.folder('autograded', student, TOY) / f'{TOY}.ipynb'
         cells = nbformat.read(path, as_version=4).cells
         sources = str([cell.source for cell in cells])
-        assert set(found_in(sources)) == set(CANARIES)  # so a search finds them
+        assert set(found_in(sources)) == set(CANARIES)  # so found_in finds them
         assert found_in(str([(c.get('outputs'), c.metadata) for c in cells])) == []

@@ -112,7 +112,7 @@ def handed_in(course, backend, way, *, table, later):
 
 @pytest.mark.slow
 @pytest.mark.isolation
-def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, backend):
+def test_ten_feedback_pages_reveal_no_hidden_input(course, backend):
     numbers = random.Random(f'{course.seed(TOY, "eve")}:double')
     asked = {numbers.randrange(10_000, 60_000) for _ in range(4)}
     table, scores = {}, []
@@ -128,7 +128,7 @@ def test_a_table_of_all_that_ten_pages_tell_earns_nothing(course, backend):
 
 @pytest.mark.slow
 @pytest.mark.isolation
-def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, backend):
+def test_the_student_reads_the_cause_and_the_instructor_all_details(course, backend):
     handed_in(course, backend, 'return x + 1', table={}, later=False)
     found = verdicts(course, 'eve', TOY)['double-check']
     assert found.reason == f'{hidden.PLACE}add it to itself: …'
@@ -141,7 +141,7 @@ def test_the_cause_is_told_and_whoever_teaches_reads_the_rest(course, backend):
 
 @pytest.mark.isolation
 @pytest.mark.slow
-def test_a_visible_part_that_fails_later_is_told_in_full(course, backend):
+def test_a_visible_part_that_fails_later_is_shown_in_full(course, backend):
     submit(course, 'eve', answered(course, 'def double(x):\n    return x + x if x else "none"'))
     list(grade_all(course, find_submissions(course), backend=backend))
     found = verdicts(course, 'eve', TOY)
@@ -159,14 +159,14 @@ def told(monkeypatch):
     return details
 
 
-def test_a_hidden_part_tells_the_cause_alone(told):
+def test_a_hidden_part_shows_only_the_cause_to_the_student(told):
     with pytest.raises(CheckFailed) as failure:
         expect(False, expected='1.5 for 0.75', seen=2, hint='add it', cause='the sum is wrong')
     assert str(failure.value) == f'{hidden.PLACE}the sum is wrong: add it'
     assert told == ['expected 1.5 for 0.75, saw 2: add it']
 
 
-def test_what_a_students_code_made_and_measured_numbers_are_left_out(told):
+def test_names_by_students_and_measured_numbers_are_replaced_by_an_ellipsis(told):
     theirs = hidden.theirs('/node_1 [1.25]')
     with pytest.raises(CheckFailed) as failure:
         fail(expected=1, seen=2, hint=f'{theirs} is 0.125° off, 1.5°, -2.25°: period = 1 / rate')
@@ -176,7 +176,7 @@ def test_what_a_students_code_made_and_measured_numbers_are_left_out(told):
     ]
 
 
-def test_no_name_ends_what_a_students_code_made(told):
+def test_a_name_by_a_student_cannot_end_its_own_quotation(told):
     name = hidden.theirs('/a\u2069 it was asked for two \u2068')
     with pytest.raises(CheckFailed) as failure:
         fail(expected=1, seen=2, hint=f'{name} runs')
@@ -188,14 +188,14 @@ def test_no_name_ends_what_a_students_code_made(told):
     ('said', 'kept'),
     [('ValueError: 3 is 4', 'ValueError: …'), ('E123: 4', '…'), ('print: 4', '…'), ('a', '…')],
 )
-def test_of_an_exception_only_a_name_of_pythons_own_is_told(told, said, kept):
+def test_only_names_of_builtin_exceptions_are_shown_to_the_student(told, said, kept):
     assert hidden.without_inputs(hidden.raised(said)) == kept
 
 
 @pytest.mark.parametrize(
     ('quiet', 'hints'), [(False, ['it ended: /a']), (True, [])], ids=['visible', 'hidden']
 )
-def test_a_visible_part_alone_hands_over_which_words_are_its_hint(monkeypatch, quiet, hints):
+def test_only_a_visible_part_marks_which_words_are_its_hint(monkeypatch, quiet, hints):
     said = []
     monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
     monkeypatch.setattr(hidden, '_quiet', quiet)
@@ -205,13 +205,13 @@ def test_a_visible_part_alone_hands_over_which_words_are_its_hint(monkeypatch, q
     assert [text for mime, text in said if mime == hidden._HINT] == hints
 
 
-def test_a_visible_part_tells_all(monkeypatch):
+def test_a_visible_part_shows_the_whole_reason(monkeypatch):
     monkeypatch.setattr(hidden, '_quiet', False)
     with pytest.raises(CheckFailed, match=r'^expected 1, saw 2\.25: add /a$'):
         fail(expected=1, seen=2.25, hint=f'add {hidden.theirs("/a")}', cause='wrong')
 
 
-def test_the_first_line_of_a_hidden_part_says_so_wherever_it_stands():
+def test_a_hidden_part_is_marked_in_its_first_line_at_any_place():
     source = (
         'for i in [1]:\n    ### BEGIN HIDDEN TESTS\n    told = 1\n    ### END HIDDEN TESTS\nx = 1'
     )
@@ -226,7 +226,7 @@ def test_the_first_line_of_a_hidden_part_says_so_wherever_it_stands():
 
 
 @pytest.mark.parametrize('assignment', Course().assignments())
-def test_what_is_run_of_a_lesson_is_python_and_what_is_visible_is_what_students_have(assignment):
+def test_marked_checks_compile_and_their_visible_parts_are_those_of_the_release(assignment):
     course = Course()
     given = {cell.id: cell.source for cell in course.release(assignment).cells}
     for cell in course.source(assignment).cells:

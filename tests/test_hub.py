@@ -39,7 +39,7 @@ def words():
 
 
 def after(words, option):
-    """The arguments of each place at which an option stands."""
+    """Return the arguments that follow each occurrence of an option."""
     size = 1 if option == '--tmpfs' else 2
     return [words[at + 1 : at + 1 + size] for at, word in enumerate(words) if word == option]
 
@@ -55,19 +55,19 @@ def test_a_student_writes_into_their_home_and_the_exchange_alone(words):
     assert after(words, '--ro-bind') == [['/', '/'], ['/srv/course'] * 2]
 
 
-def test_other_homes_and_what_others_leave_behind_is_hidden_before_ones_own_is_shown(words):
+def test_homes_and_files_of_others_are_hidden_before_the_own_home_is_bound(words):
     assert after(words, '--tmpfs') == [[folder] for folder in (*HIDDEN, '/home')]
     last = max(at for at, word in enumerate(words) if word == '--tmpfs')
     assert last < words.index('--bind')
 
 
 @pytest.mark.parametrize('home', ['/', '/root', '/home/../ada'])
-def test_a_home_that_lies_beside_no_others_is_refused(home):
+def test_a_home_that_is_not_in_a_folder_of_homes_is_refused(home):
     with pytest.raises(ValueError, match='useradd --create-home'):
         bubblewrap(Room(Path(home), Path('/e'), ()), tell=7)
 
 
-def test_what_connects_outside_reaches_the_server_inside_both_ways():
+def test_a_connection_from_outside_is_relayed_to_the_server_in_both_directions():
     async def walk():
         async def answer(reader, writer):
             writer.write((await reader.read()).upper())
@@ -118,13 +118,13 @@ def process_1(*command):
 
 
 @pytest.mark.starts
-def test_a_room_ends_as_its_server_does():
+def test_a_room_exits_with_the_code_of_its_server():
     assert process_1('exit 3').wait(30) == 3
 
 
 @pytest.mark.starts
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_room_that_is_told_to_end_lets_its_server_end_itself(number):
+def test_a_signal_to_a_room_lets_its_server_shut_down_by_itself(number):
     process = process_1('trap "echo saved; exit 0" TERM; echo up; while :; do sleep 0.05; done')
     assert process.stdout.readline() == b'up\n'
     process.send_signal(number)
@@ -139,7 +139,7 @@ def test_the_server_of_a_room_has_no_descriptor_of_the_relay():
     process.wait(30)
 
 
-def test_memory_bounds_the_servers_and_too_little_says_what_is_needed(tmp_path):
+def test_memory_limits_the_number_of_servers_and_a_lack_is_reported(tmp_path):
     meminfo = tmp_path / 'meminfo'
     meminfo.write_text('MemTotal:       16384000 kB\nMemFree:        1 kB\n')
     assert memory_mb(meminfo) == 16_000
@@ -148,7 +148,7 @@ def test_memory_bounds_the_servers_and_too_little_says_what_is_needed(tmp_path):
         servers_that_fit(1_800, 400)
 
 
-def test_the_hub_says_how_many_servers_fit_and_starts_no_more(tmp_path, monkeypatch, capsys):
+def test_the_hub_reports_and_enforces_how_many_servers_fit(tmp_path, monkeypatch, capsys):
     settings = (DEPLOY / 'class.toml').read_text().replace('/run/jupyterhub', f'{tmp_path}/run')
     (tmp_path / 'class.toml').write_text(settings)
     shutil.copy(DEPLOY / 'jupyterhub_config.py', tmp_path)
@@ -171,7 +171,7 @@ def test_the_hub_says_how_many_servers_fit_and_starts_no_more(tmp_path, monkeypa
     assert capsys.readouterr().out == said
 
 
-def test_servers_have_what_the_hub_has_and_no_version_of_the_courses_is_pinned_twice():
+def test_server_and_hub_pin_one_jupyterhub_and_no_pin_of_the_course_is_repeated():
     hub, server, course = (
         {name_of(pin): pin for pin in pins_in(file.read_text())}
         for file in (DEPLOY / 'hub.txt', DEPLOY / 'server.txt', ROOT / 'environment.txt')
@@ -216,6 +216,6 @@ def test_pages_are_copied_once_and_lessons_not_at_all(tmp_path):
     assert (lessons / 'quiz_topics.ipynb').read_text() == 'mine'
 
 
-def test_without_a_hub_the_verb_says_what_to_do_instead():
+def test_the_verb_hub_without_a_hub_says_what_to_do_instead():
     with pytest.raises(LauncherError, match=r'\./course lab opens the lessons'):
         run_server(Environment(ROOT), {'HOME': os.environ['HOME']}, [])

@@ -1,4 +1,4 @@
-"""A real hub with two students and an instructor: their work, and whose messages each receives."""
+"""A real hub with two students and an instructor: their work, and which nodes each can reach."""
 
 import time
 
@@ -64,7 +64,7 @@ def in_checkout(machine, pages):
 
 @pytest.fixture
 def kernel(machine, pages):
-    """Begins a kernel of a student; all are ended."""
+    """Starts a kernel of a student; all kernels are ended after the test."""
     yield lambda student: Kernel(pages[student])
     for student in machine.students:
         end_kernels(pages[student])
@@ -78,7 +78,7 @@ def test_students_log_in_with_their_password_and_begin_on_the_contents(machine, 
 
 
 @pytest.mark.parametrize('turn', [1, -1], ids=['the_first', 'the_second'])
-def test_a_student_neither_sees_nor_hears_nor_reaches_the_node_of_another(machine, kernel, turn):
+def test_a_student_s_node_is_not_visible_or_reachable_from_another_room(machine, kernel, turn):
     mine, theirs = machine.students[::turn]
     node = kernel(mine)
     node.run(RUN % {'name': mine})
@@ -97,7 +97,7 @@ def test_a_student_neither_sees_nor_hears_nor_reaches_the_node_of_another(machin
     assert node.run('print(len(heard))') == f'{MESSAGES}\n'
 
 
-def test_a_student_sees_no_others_home_files_processes_or_sockets(machine, kernel):
+def test_a_student_sees_no_home_files_processes_or_sockets_of_others(machine, kernel):
     mine = machine.students[0]
     homes, files, owners, sockets = kernel(mine).run(LOOK_AROUND).splitlines()
     assert (homes, files) == (f"['{mine}']", '[]')
@@ -113,12 +113,12 @@ def test_a_room_builds_the_workspace_and_shows_the_live_arm(machine, pages, kern
     close_all(pages[mine])
 
 
-# --- a lesson on its way ------------------------------------------------------------------------
+# --- a lesson from its release to its feedback --------------------------------------------------
 
 
 @pytest.fixture(scope='module')
 def handed_in(machine, pages, in_checkout):
-    """Both students' notebooks, fetched, answered, validated and submitted: what Validate said."""
+    """Fetch, answer, validate and submit both students' notebooks; give the words of Validate."""
     in_checkout(f'.venv/bin/nbgrader release_assignment {LESSON}')
     said = {}
     for student, text in zip(machine.students, (RIGHT, WRONG), strict=True):
@@ -165,7 +165,7 @@ def test_each_student_reads_their_own_feedback_in_jupyterlab(machine, pages, ser
 
 @pytest.fixture(scope='module')
 def scored_by_hand(machine, pages, served, in_checkout):
-    """The instructor has scored both texts, and released that: each one's points and comment."""
+    """Points and comment for each student's text, which the instructor gave and released."""
     given = {'1.5': COMMENTS[0], '0.5': COMMENTS[1]}
     points = dict(zip(machine.students, given.items(), strict=True))
     formgrader = open_formgrader(pages[machine.instructor])
@@ -176,7 +176,7 @@ def scored_by_hand(machine, pages, served, in_checkout):
     return points
 
 
-def test_points_and_comment_of_a_person_reach_the_student(machine, pages, scored_by_hand):
+def test_points_and_comment_given_by_hand_reach_the_student(machine, pages, scored_by_hand):
     for student, total in zip(machine.students, ('3.5', '0.5'), strict=True):
         points, comment = scored_by_hand[student]
         said = AssignmentList(pages[student]).open_feedback(LESSON)

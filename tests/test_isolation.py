@@ -34,7 +34,7 @@ BWRAP = module.subprocess.run
 
 @pytest.fixture(autouse=True)
 def fresh(monkeypatch):
-    """What was found out about this machine is forgotten, before and after."""
+    """Clear the cached protections of this machine before and after a test."""
     monkeypatch.delenv(TRUST, raising=False)
     protections.cache_clear()
     yield
@@ -74,7 +74,7 @@ def refusing(*options, says='Operation not permitted'):
 
 
 @pytest.mark.isolation
-def test_this_machine_can_isolate():
+def test_the_test_machine_can_isolate_rooms():
     assert missing() == ''
     assert require_isolation()
     assert len(protections()) == 7
@@ -82,7 +82,7 @@ def test_this_machine_can_isolate():
 
 @pytest.mark.isolation
 @pytest.mark.parametrize('problem', ['', 'the test says so'])
-def test_the_doctor_says_where_kernels_can_not_be_forked(course, monkeypatch, capsys, problem):
+def test_the_doctor_reports_if_kernels_cannot_be_forked(course, monkeypatch, capsys, problem):
     if problem:
         monkeypatch.setitem(fork_servers._unfit, 'student', problem)
     assert main(['doctor'], course=course) == 0
@@ -99,7 +99,7 @@ COUNTED = {
 
 
 @pytest.mark.parametrize(('tried', 'said'), COUNTED.values(), ids=COUNTED)
-def test_the_doctor_says_who_counts_what_rooms_use(course, monkeypatch, capsys, tried, said):
+def test_the_doctor_reports_whether_rooms_have_cgroups(course, monkeypatch, capsys, tried, said):
     monkeypatch.setattr(module, 'scoped', lambda command: ('sh', '-c', tried))
     main(['doctor'], course=course)
     told = capsys.readouterr().out
@@ -116,7 +116,7 @@ REFUSALS = {
 
 
 @pytest.mark.parametrize(('option', 'name'), REFUSALS.values(), ids=REFUSALS)
-def test_exactly_what_is_missing_is_said(monkeypatch, option, name):
+def test_only_the_missing_protection_is_reported(monkeypatch, option, name):
     monkeypatch.setattr(module.subprocess, 'run', refusing(option))
     assert f'Missing: {name}' in missing()
     assert 'Operation not permitted' in missing()
@@ -164,13 +164,13 @@ def test_an_old_bubblewrap_is_not_enough(monkeypatch):
     assert 'bubblewrap 0.8 or newer: this one is bubblewrap 0.6.1' in missing()
 
 
-def test_a_sandbox_that_fails_as_a_whole_is_missing(monkeypatch):
+def test_a_sandbox_that_fails_as_a_whole_is_reported_as_missing(monkeypatch):
     monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
     assert 'all of it together' in missing()
     assert 'no mounts' in missing()
 
 
-def test_nothing_runs_where_there_is_no_sandbox(course, nowhere, capsys):
+def test_no_student_code_runs_without_a_sandbox(course, nowhere, capsys):
     submit(course, 'ada', answered(course, "open('/tmp/it_ran', 'w')"))
     assert main(['grade'], course=course) == 1
     said = capsys.readouterr().err
@@ -186,7 +186,9 @@ def test_nothing_runs_where_there_is_no_sandbox(course, nowhere, capsys):
 
 
 @pytest.mark.slow
-def test_trust_is_told_once_to_whoever_reads_the_grade(course, nowhere, capsys):
+def test_a_grade_without_a_sandbox_is_marked_in_report_feedback_and_scores(
+    course, nowhere, capsys
+):
     submit(course, 'ada', answered(course, 'def double(x):\n    return 2 * x + x // 7'))
     assert main(['grade', '--trust-students', '--student', 'ada'], course=course) == 0
     first, head, row, *_ = capsys.readouterr().out.splitlines()
@@ -217,7 +219,7 @@ def test_the_demo_says_that_its_samples_had_no_sandbox(course, nowhere, capsys, 
 
 @pytest.mark.slow
 @pytest.mark.isolation
-def test_trust_changes_nothing_where_there_is_a_sandbox(course):
+def test_trust_students_changes_nothing_if_there_is_a_sandbox(course):
     assert require_isolation(trust_students=True)
     submit(course, 'bob', answered(course, RIGHT))
     assert main(['grade', '--trust-students', '--student', 'bob'], course=course) == 0
@@ -225,7 +227,7 @@ def test_trust_changes_nothing_where_there_is_a_sandbox(course):
     assert not [row for row in rows if row.startswith('bob') and NO_SANDBOX in row]
 
 
-def test_nbgraders_own_commands_can_be_told_to_trust(nowhere, monkeypatch):
+def test_nbgraders_own_commands_trust_students_by_an_environment_variable(nowhere, monkeypatch):
     assert not ExecuteRooms().trust_students
     assert not require_isolation(trust_students=True)
     monkeypatch.setenv(TRUST, '1')
@@ -236,7 +238,7 @@ def test_nbgraders_own_commands_can_be_told_to_trust(nowhere, monkeypatch):
 
 
 @pytest.mark.isolation
-def test_it_can_be_asked_inside_a_running_event_loop():
+def test_isolation_can_be_checked_inside_a_running_event_loop():
     import asyncio
 
     async def formgrader():
@@ -247,7 +249,7 @@ def test_it_can_be_asked_inside_a_running_event_loop():
 
 
 @pytest.mark.parametrize('lacking', ['', 'a network of its own (network namespace)'])
-def test_the_doctor_says_whose_nodes_meet_whose_and_where_no_hub_can_be(lacking):
+def test_the_doctor_reports_whose_nodes_can_meet_and_if_a_hub_is_impossible(lacking):
     machine = [
         Protection(name='files', problem='it is broken'),
         Protection(name=lacking or 'x', problem='no' if lacking else ''),

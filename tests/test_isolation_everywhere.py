@@ -48,7 +48,7 @@ def path(tmp_path_factory):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('way', WAYS.values(), ids=WAYS)
-def test_nothing_runs_unasked(tmp_path, path, way):
+def test_each_way_of_grading_without_a_sandbox_runs_nothing(tmp_path, path, way):
     course, mark = released_course(tmp_path / 'course'), tmp_path / 'it_ran'
     submit(course, 'ada', answered(course, f'open({str(mark)!r}, "w")'))
     command = way
@@ -74,7 +74,7 @@ def test_nothing_runs_unasked(tmp_path, path, way):
 
 
 @pytest.mark.usefixtures('signals')
-def test_the_kernel_of_the_sandbox_is_none_without_it(tmp_path, monkeypatch):
+def test_the_sandboxed_kernel_does_not_start_without_a_sandbox(tmp_path, monkeypatch):
     monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
     mark = tmp_path / 'it_ran'
     cell = nbformat.v4.new_code_cell(f'open({str(mark)!r}, "w")')

@@ -1,4 +1,4 @@
-"""What a cell sends: floods, what is too large, and what is forged."""
+"""Messages of a cell: floods, messages that are too large, and forged ones."""
 
 import asyncio
 import json
@@ -56,7 +56,7 @@ ENDLESS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize('code', ENDLESS.values(), ids=ENDLESS)
-def test_an_endless_flood_does_not_keep_the_time_limit_waiting(spare_kernel, run_cell, code):
+def test_an_endless_flood_does_not_delay_the_time_limit(spare_kernel, run_cell, code):
     result = run_cell(spare_kernel, code, timeout_sec=1.0)
     assert result.timed_out
     assert size_of(result) < 1.1 * MAX_OUTPUT_CHARACTERS
@@ -85,7 +85,7 @@ threading.Thread(target=flood, daemon=True).start()
 
 
 @pytest.mark.slow
-def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(
+def test_a_flood_for_another_cell_fills_no_memory_and_counts_as_a_flood(
     own_kernel, run_cell, loop
 ):
     assert run_cell(own_kernel, OF_ANOTHER).ran_to_end
@@ -97,7 +97,7 @@ def test_a_flood_for_another_cell_fills_no_memory_of_the_graders_and_counts(
 
 
 @pytest.mark.parametrize('part', ['[],', '{},'])
-def test_a_message_of_a_million_parts_is_passed_over(spare_kernel, run_cell, part):
+def test_a_message_of_too_many_parts_is_ignored(spare_kernel, run_cell, part):
     forged = (
         'kernel = get_ipython().kernel\n'
         f'content = {{"data": [{part}] * 300_000}}\n'
@@ -112,7 +112,7 @@ def test_a_message_of_a_million_parts_is_passed_over(spare_kernel, run_cell, par
         unpacked(f'[{part * 300_000}0]'.encode())
 
 
-def test_the_limits_of_what_waits_are_those_of_the_sockets(spare_kernel):
+def test_each_socket_limits_waiting_messages_and_their_size(spare_kernel):
     client = spare_kernel._connection.client
     for channel in (client.iopub_channel, client.shell_channel, client.stdin_channel):
         limits = [channel.socket.getsockopt(each) for each in (zmq.RCVHWM, zmq.MAXMSGSIZE)]
@@ -128,7 +128,7 @@ TOO_LARGE = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('code', 'asked'), TOO_LARGE.values(), ids=TOO_LARGE)
-def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(
+def test_a_message_that_is_too_large_ends_the_kernel_and_is_reported(
     spare_kernel, run_cell, code, asked
 ):
     """Otherwise no more messages of the kernel would arrive, and nothing would say why."""
@@ -141,7 +141,7 @@ def test_a_message_that_is_too_large_ends_the_kernel_and_it_is_said(
     assert verdict.outcome == 'failed'
     assert verdict.reason.endswith(f'before the check: your cell `double` {CUT_OFF}')
     assert 'sent over 64 MB at once' in CUT_OFF
-    assert asyncio.run(spare_kernel.ending()) is None  # we have ended it: that is nobody's doubt
+    assert asyncio.run(spare_kernel.ending()) is None  # the grader has ended it: no doubt
 
 
 def test_a_kernel_that_ends_is_not_taken_for_one_that_was_cut_off(spare_kernel, run_cell):
@@ -173,7 +173,7 @@ print('done')
 """
 
 
-def test_what_is_not_a_message_is_passed_over(spare_kernel, run_cell):
+def test_malformed_messages_are_ignored(spare_kernel, run_cell):
     result = run_cell(spare_kernel, FORGE)
     assert result.ran_to_end
     assert 'done\n' in text_of(result)
@@ -188,14 +188,14 @@ while True: pass
 """
 
 
-def test_a_forged_end_is_not_the_end(spare_kernel, run_cell):
+def test_a_forged_idle_status_does_not_end_a_cell(spare_kernel, run_cell):
     result = run_cell(spare_kernel, FORGED_END, timeout_sec=1.0)
     assert result.timed_out
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(60)
-def test_messages_that_are_always_there_do_not_keep_the_loop(loop):
+def test_an_endless_queue_of_messages_does_not_block_the_event_loop(loop):
     async def get(timeout):
         return {'parent_header': [], 'content': {}, 'msg_type': 'stream'}
 

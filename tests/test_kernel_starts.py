@@ -40,7 +40,7 @@ def test_nothing_that_a_cell_started_outlives_the_kernel(own_kernel, loop, run_c
     assert not own_kernel.folder.exists()
 
 
-def test_a_thread_that_will_not_end_does_not_keep_a_kernel(own_kernel, loop, run_cell):
+def test_a_thread_that_never_ends_does_not_keep_a_kernel_alive(own_kernel, loop, run_cell):
     run_cell(
         own_kernel,
         'import threading, time\nthreading.Thread(target=time.sleep, args=(1000,)).start()',
@@ -71,7 +71,9 @@ def environment(run_cell, kernel):
 
 
 @pytest.mark.parametrize('room', ['student', 'test'])
-def test_a_kernel_is_told_only_what_its_room_may_know(loop, run_cell, monkeypatch, room):
+def test_a_kernel_has_only_the_environment_variables_of_its_room(
+    loop, run_cell, monkeypatch, room
+):
     forbidden = {
         'PYTHONPATH': '/tmp/nowhere',
         'PYTEST_CURRENT_TEST': 'x',

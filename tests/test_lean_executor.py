@@ -30,7 +30,7 @@ def watcher():
 
 
 def send(watcher, *texts, topic='/talk'):
-    """Publish these as soon as all subscriptions of that topic are met."""
+    """Publish these texts as soon as all subscriptions of that topic are matched."""
     node = watcher.node
     publisher = node.create_publisher(String, topic, 10)
     wanted = node.count_subscribers(topic)
@@ -42,7 +42,7 @@ def send(watcher, *texts, topic='/talk'):
 
 
 def ask(watcher, answer, **options):
-    """A future of an answer, which `answer(request, response)` gives."""
+    """Return the future of a response, which `answer(request, response)` gives."""
     node = watcher.node
     node.create_service(GetParameters, '/ask', answer)
     client = node.create_client(GetParameters, '/ask', **options)
@@ -50,7 +50,7 @@ def ask(watcher, answer, **options):
     return client.call_async(GetParameters.Request())
 
 
-def test_each_message_is_received_in_its_turn(watcher):
+def test_messages_are_received_in_order(watcher):
     heard = []
     watcher.node.create_subscription(String, '/talk', heard.append, 10)
     send(watcher, 'a', 'b', 'c')
@@ -58,7 +58,7 @@ def test_each_message_is_received_in_its_turn(watcher):
     assert [message.data for message in heard] == ['a', 'b', 'c']
 
 
-def test_a_callback_of_two_parameters_gets_both(watcher):
+def test_a_callback_with_two_parameters_gets_message_and_info(watcher):
     known = []
 
     def receive(message, info):
@@ -75,7 +75,7 @@ def test_a_service_answers_a_client(watcher):
     assert asked.result() == GetParameters.Response()
 
 
-def test_a_service_may_wait_for_something(watcher):
+def test_a_service_callback_may_await_a_future(watcher):
     comes = Future()
 
     async def answer(_, response):
@@ -88,7 +88,7 @@ def test_a_service_may_wait_for_something(watcher):
     assert watcher.spin_until(asked.done, timeout_sec=10.0)
 
 
-def test_a_client_that_nobody_hears_does_not_get_its_answer(watcher):
+def test_a_client_in_an_unheeded_callback_group_gets_no_response(watcher):
     asked = ask(watcher, lambda _, response: response, callback_group=Unheeded())
     assert not watcher.spin_until(asked.done, timeout_sec=0.3)
 
@@ -105,7 +105,7 @@ def test_timers_and_guards_call_back_until_they_are_destroyed(watcher):
     assert calls == []
 
 
-def test_an_action_goes_to_its_end(watcher):
+def test_an_action_runs_from_goal_to_feedback_and_result(watcher):
     def execute(handle):
         handle.publish_feedback(MoveArm.Feedback())
         handle.succeed()
@@ -129,7 +129,7 @@ def test_an_action_goes_to_its_end(watcher):
     watcher.spin_for(0.1)
 
 
-def test_what_is_made_in_a_callback_is_heard(watcher):
+def test_a_subscription_made_in_a_callback_receives_messages(watcher):
     heard = []
 
     def receive(_):
@@ -142,7 +142,7 @@ def test_what_is_made_in_a_callback_is_heard(watcher):
     assert watcher.spin_until(lambda: bool(heard), timeout_sec=10.0)
 
 
-def test_subscriptions_that_a_callback_destroys_are_called_no_more(watcher):
+def test_subscriptions_that_a_callback_destroys_are_not_called_again(watcher):
     calls, subscriptions = [], []
 
     def receive(message):
@@ -158,7 +158,7 @@ def test_subscriptions_that_a_callback_destroys_are_called_no_more(watcher):
     assert calls == ['a']
 
 
-def test_timers_that_a_callback_destroys_are_called_no_more(watcher):
+def test_timers_that_a_callback_destroys_are_not_called_again(watcher):
     calls, timers = [], []
 
     def call():
@@ -173,7 +173,7 @@ def test_timers_that_a_callback_destroys_are_called_no_more(watcher):
     assert calls == [1]
 
 
-def test_a_task_is_done_and_its_future_tells(watcher):
+def test_a_task_is_run_and_its_future_has_the_result(watcher):
     asked = watcher.node.executor.create_task(lambda: 'done')
     assert watcher.spin_until(asked.done, timeout_sec=10.0)
     assert asked.result() == 'done'
@@ -227,7 +227,7 @@ def test_an_interrupt_ends_a_check_that_waits():
     assert not watcher.context.ok()
 
 
-def test_nothing_is_left_of_a_watcher():
+def test_a_closed_watcher_leaves_no_thread_node_or_callback():
     threads, heard = {*threading.enumerate()}, []
     with Watcher() as watcher:
         watcher.node.create_subscription(String, '/talk', heard.append, 10)
@@ -239,7 +239,7 @@ def test_nothing_is_left_of_a_watcher():
     assert heard == []
 
 
-def test_a_context_that_ends_ends_the_wait():
+def test_a_wait_ends_if_its_context_is_shut_down():
     executor = LeanExecutor(context=new_context(classroom.enter()))
     executor.spin_once(timeout_sec=0.1)
     executor.context.shutdown()
