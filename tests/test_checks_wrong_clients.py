@@ -74,7 +74,7 @@ class Solves(IKClient):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
-def test_who_asks_and_publishes_another_answer_is_found(run):
+def test_a_client_that_publishes_its_own_solution_instead_of_the_response_fails(run):
     run(Solves)
     with (
         server(partial(ik.solve, l1=1.3)) as serving,
@@ -96,7 +96,7 @@ class CountsSlowly(IKClient):
             super().say_alive()
 
 
-def test_a_count_that_is_slow_is_no_count_that_stands_still(run):
+def test_a_slow_count_is_reported_as_a_wrong_rate_and_not_as_blocking(run):
     run(CountsSlowly)
     with pytest.raises(
         CheckFailed, match=r'expected 10.0 Hz on /ik_client/alive, saw .* 1 / rate'
@@ -111,7 +111,7 @@ class AnswersAnything(IKClient):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('impatient')
-def test_who_publishes_no_angles_is_told(run):
+def test_publishing_without_angles_for_an_unreachable_target_is_reported(run):
     run(AnswersAnything)
     with pytest.raises(CheckFailed, match=r'no message on /kin.*: publish only if response.re'):
         check_asks()
@@ -119,7 +119,7 @@ def test_who_publishes_no_angles_is_told(run):
 
 @pytest.mark.parametrize(('node_class', 'message'), WRONG)
 @pytest.mark.usefixtures('impatient')
-def test_what_is_wrong_is_named(run, node_class, message):
+def test_each_wrong_client_is_reported_with_its_fault(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_asks()
@@ -157,21 +157,21 @@ ANOTHER = r'expected one message on /kinematics/joint_states for each response, 
         (Twice, 'publish the angles of the response, not a solution of your own, and once'),
     ],
 )
-def test_who_publishes_more_than_the_response_is_told(run, node_class, hint):
+def test_a_client_that_publishes_more_than_the_response_is_reported(run, node_class, hint):
     run(node_class)
     with pytest.raises(CheckFailed, match=f'{ANOTHER}.*{hint}'):
         check_never_blocks()
 
 
 @pytest.mark.slow
-def test_who_publishes_more_is_found_before_the_end(run):
+def test_a_client_that_publishes_twice_fails_the_check_of_its_requests(run):
     run(Twice)
     with pytest.raises(CheckFailed, match='/kinematics/joint_states'):
         check_asks()
 
 
 class AsksForTheLastTarget(IKClient):
-    """Twice a second, once there is one."""
+    """Requests the last target twice a second, once there is one."""
 
     def __init__(self):
         super().__init__()
@@ -184,7 +184,7 @@ class AsksForTheLastTarget(IKClient):
 
 
 @pytest.mark.slow
-def test_who_asks_again_and_publishes_each_answer_is_told(run):
+def test_a_client_that_publishes_the_pose_of_a_target_repeatedly_is_reported(run):
     run(AsksForTheLastTarget)
     with pytest.raises(
         CheckFailed, match=r'expected the pose of each target once, saw one \d tim'
@@ -201,7 +201,7 @@ class AsksAgain(IKClient):
 
 
 @pytest.mark.slow
-def test_who_asks_without_end_is_stopped(run, monkeypatch):
+def test_a_client_with_endless_requests_is_stopped_at_a_limit(run, monkeypatch):
     monkeypatch.setattr(holding_server, 'MOST_REQUESTS', 20)
     run(AsksAgain)
     with pytest.raises(CheckFailed, match=r'for each message, saw 20 of them: ask once in the'):
@@ -218,7 +218,7 @@ class AsksInALoop(IKClient):
 
 
 @pytest.mark.slow
-def test_who_asks_for_more_than_its_queue_holds_is_told_so_each_time(run):
+def test_a_client_that_sends_more_requests_than_its_queue_holds_is_reported(run):
     run(AsksInALoop)
     with pytest.raises(CheckFailed, match='for each message, saw more than 10 at once: ask once'):
         check_never_blocks()
@@ -246,7 +246,7 @@ class AsksForATrigger(IKClient):
     ],
 )
 @pytest.mark.usefixtures('impatient')
-def test_a_client_of_something_else_is_found(run, node_class, message):
+def test_a_client_of_a_different_service_or_type_is_reported(run, node_class, message):
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_asks()

@@ -30,7 +30,7 @@ def machine(bare):
 
 
 # --- when it sets up -----------------------------------------------------------------------------
-def test_first_call_sets_up_and_the_second_does_nothing(machine):
+def test_the_first_call_sets_up_the_environment_and_the_second_does_not(machine):
     first = machine.course('scores')
     assert first.returncode == 0, first.stderr
     assert len(machine.calls('uv venv')) == 1
@@ -41,7 +41,7 @@ def test_first_call_sets_up_and_the_second_does_nothing(machine):
     assert machine.calls('python -P')
 
 
-def test_without_uv_pip_does_the_same(machine):
+def test_pip_sets_up_the_environment_if_uv_is_missing(machine):
     (machine.programs / 'uv').unlink()
     assert machine.course('scores').returncode == 0
     assert len(machine.calls('python -m venv')) == 1
@@ -49,7 +49,7 @@ def test_without_uv_pip_does_the_same(machine):
     assert machine.course('scores').stderr == ''
 
 
-def test_a_uv_that_does_not_run_is_no_uv(machine):
+def test_a_uv_that_does_not_run_is_not_used(machine):
     machine.program('uv', 'echo "pyenv: uv: command not found" >&2; exit 127')
     assert machine.course('scores').returncode == 0
     assert len(machine.calls('python -m venv')) == 1
@@ -86,7 +86,7 @@ def moved(machine):
 @pytest.mark.parametrize(
     'happening', [other_pins, half_made, marker_cut_short, python_gone, python_upgraded, moved]
 )
-def test_sets_up_again_after(happening, machine):
+def test_the_environment_is_made_again_after_a_change(happening, machine):
     machine.course('scores')
     leftover = machine.root / '.venv/leftover'
     leftover.touch()
@@ -98,14 +98,14 @@ def test_sets_up_again_after(happening, machine):
     assert machine.course('scores').stderr == ''
 
 
-def test_another_python_asked_for_is_set_up(machine):
+def test_a_different_python_named_by_the_user_is_set_up(machine):
     machine.course('scores')
     machine.program('other', re.sub(r"(echo '?)3\.12\.1", r'\g<1>3.13.0', PYTHON))
     run = machine.course('scores', PYTHON='other')
     assert 'with Python 3.13.0' in run.stderr
 
 
-def test_new_entry_points_are_installed_without_making_all_again(machine):
+def test_new_entry_points_are_installed_without_a_new_environment(machine):
     machine.course('scores')
     with (machine.root / 'my_robot_basics/setup.py').open('a') as file:
         file.write('# another console script\n')
@@ -117,7 +117,7 @@ def test_new_entry_points_are_installed_without_making_all_again(machine):
     assert machine.course('scores').stderr == ''
 
 
-def test_another_wheel_of_the_same_version_is_installed(machine):
+def test_a_changed_wheel_of_the_same_version_is_installed(machine):
     machine.course('scores')
     machine.calls('uv')
     (wheel,) = machine.root.glob('arm_interfaces/wheel/*.whl')
@@ -128,7 +128,7 @@ def test_another_wheel_of_the_same_version_is_installed(machine):
     assert machine.course('scores').stderr == ''
 
 
-def test_without_its_wheel_the_course_says_what_is_missing(machine):
+def test_a_missing_wheel_of_the_interfaces_is_reported(machine):
     (wheel,) = machine.root.glob('arm_interfaces/wheel/*.whl')
     wheel.unlink()
     sentence = the_one_sentence(machine.course('scores'))
@@ -177,19 +177,19 @@ def test_two_calls_at_once_set_up_once(machine):
     assert 'waiting for another ./course' in run.stderr
 
 
-# --- where it can't work -------------------------------------------------------------------------
+# --- machines on which it can't work -------------------------------------------------------------
 @pytest.mark.parametrize(
     ('system', 'processor'),
     [('Darwin', 'arm64'), ('Linux', 'aarch64'), ('MINGW64_NT-10.0', 'x86_64')],
 )
-def test_another_machine_is_named(bare, system, processor):
+def test_an_unsupported_machine_is_reported(bare, system, processor):
     bare.program('uname', f'case $1 in -s) echo {system} ;; *) echo {processor} ;; esac')
     sentence = the_one_sentence(bare.course('lab'))
     assert f'{system} on {processor}' in sentence
     assert 'use such a machine' in sentence
 
 
-def test_no_python_is_said(bare):
+def test_a_missing_python_is_reported(bare):
     sentence = the_one_sentence(bare.course('lab'))
     assert 'Python 3.11, 3.12 or 3.13 is needed, and none is installed: install one' in sentence
 
@@ -206,7 +206,7 @@ def test_no_python_is_said(bare):
         ('import os; os.confstr = lambda name: None', 'without glibc 2.28'),
     ],
 )
-def test_a_python_that_does_not_fit_is_named(bare, change, fault):
+def test_an_unsuitable_python_is_reported_with_its_fault(bare, change, fault):
     bare.program(
         'python3', f'exec {shlex.quote(sys.executable)} -Ic \'import sys; {change}\n\'"$2"'
     )
@@ -215,7 +215,7 @@ def test_a_python_that_does_not_fit_is_named(bare, change, fault):
     assert 'install one' in sentence
 
 
-def test_a_python_that_fits_is_found_behind_those_that_do_not(machine):
+def test_a_suitable_python_is_found_behind_unsuitable_ones(machine):
     machine.program('python3', 'echo "pyenv: python3: command not found" >&2; exit 127')
     machine.program('python3.13', 'echo "3.13.0 a free-threaded one"')
     machine.program('python3.12', PYTHON)
@@ -225,13 +225,13 @@ def test_a_python_that_fits_is_found_behind_those_that_do_not(machine):
 
 
 @pytest.mark.parametrize('python', ['/nowhere/python3', 'false'])
-def test_a_python_asked_for_that_does_not_run_is_named(machine, python):
+def test_a_python_named_by_the_user_that_does_not_run_is_reported(machine, python):
     assert f'PYTHON={python} does not run' in the_one_sentence(
         machine.course('lab', PYTHON=python)
     )
 
 
-def test_a_missing_venv_module_is_said(machine):
+def test_a_missing_venv_module_is_reported(machine):
     (machine.programs / 'uv').unlink()
     machine.program('python3', PYTHON.replace('*ensurepip*) ;;', '*ensurepip*) exit 1 ;;'))
     sentence = the_one_sentence(machine.course('lab'))
@@ -259,7 +259,7 @@ def test_the_installers_complaint_becomes_one_sentence(machine, complaint, said)
     assert said in the_one_sentence(machine.course('lab'))
 
 
-def test_an_unknown_complaint_is_shown(machine):
+def test_an_unknown_complaint_of_the_installer_is_shown(machine):
     machine.program('uv', UV + 'case $1 in pip) echo "the moon is full" >&2; exit 1 ;; esac')
     run = machine.course('lab')
     assert run.returncode == 1
@@ -288,7 +288,7 @@ def in_a_namespace(*flags):
 
 
 @pytest.mark.parametrize('installer', INSTALLERS)
-def test_without_a_network_says_so(real, installer, tmp_path):
+def test_a_missing_network_is_reported(real, installer, tmp_path):
     if installer == 'pip':
         (real.programs / 'uv').unlink()
     empty = {'UV_CACHE_DIR': tmp_path / 'uv', 'PIP_CACHE_DIR': tmp_path / 'pip'}
@@ -301,7 +301,7 @@ def test_without_a_network_says_so(real, installer, tmp_path):
 
 
 @pytest.mark.parametrize('installer', INSTALLERS)
-def test_a_full_disk_says_so(real, installer, tmp_path):
+def test_a_full_disk_is_reported(real, installer, tmp_path):
     if installer == 'pip':
         (real.programs / 'uv').unlink()
     disk = tmp_path / 'disk'
@@ -322,7 +322,7 @@ def test_a_full_disk_says_so(real, installer, tmp_path):
     assert run.stdout == ''
 
 
-def test_a_read_only_folder_says_so(machine):
+def test_a_read_only_folder_is_reported(machine):
     read_only = 'mount --bind "$1" "$1" && mount -o remount,ro,bind "$1" && exec "$1/course" lab'
     (machine.programs / 'mount').symlink_to(shutil.which('mount'))
     run = machine.course(
@@ -336,7 +336,7 @@ def test_a_read_only_folder_says_so(machine):
 # --- with the real installers --------------------------------------------------------------------
 @pytest.mark.slow
 @pytest.mark.parametrize('installer', ['uv', 'pip'])
-def test_really_sets_up(real, installer, tmp_path):
+def test_the_real_installers_set_up_a_working_environment(real, installer, tmp_path):
     if installer == 'pip':
         (real.programs / 'uv').unlink()
     (real.root / 'grader/__main__.py').write_text(

@@ -56,7 +56,7 @@ def start_worker(start, address, *more, **environment):
 
 
 def handed_in(course, folder, first_lines=None):
-    """Return a course whose class has handed in what the ANSWERS are."""
+    """Return a course whose students have submitted the ANSWERS."""
     its = Course(root=course.root, gradebook=folder)
     folder.mkdir()
     (folder / 'gradebook.db').write_bytes(course.database.read_bytes())
@@ -105,7 +105,7 @@ def test_a_cluster_grades_as_this_machine_does_and_a_lost_worker_changes_nothing
 
 
 @pytest.mark.slow
-def test_a_lost_scheduler_ends_the_run_which_goes_on_with_another_one(
+def test_a_run_that_lost_its_scheduler_can_be_continued_with_a_new_one(
     course, scheduler, start, tmp_path, capsys
 ):
     start_worker(start, scheduler.address)
@@ -132,14 +132,16 @@ def test_a_lost_scheduler_ends_the_run_which_goes_on_with_another_one(
         ({'TOY_NUMPY': '0.1'}, 'would not grade as this machine does: numpy 0.1, and [1-9]'),
     ],
 )
-def test_a_worker_that_is_not_as_we_are_grades_nothing(scheduler, start, environment, said):
+def test_a_worker_that_differs_from_this_machine_grades_nothing(
+    scheduler, start, environment, said
+):
     start_worker(start, scheduler.address, **environment)
     with pytest.raises(ClusterError, match=said), Cluster(scheduler.address):
         pass
 
 
 @pytest.mark.slow
-def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
+def test_a_worker_that_joins_later_is_checked_too(course, scheduler, start):
     good = start_worker(start, scheduler.address)
     with Cluster(scheduler.address) as backend:
         good.kill()
@@ -150,7 +152,9 @@ def test_a_worker_that_comes_later_is_looked_at_too(course, scheduler, start):
 
 
 @pytest.mark.slow
-def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, start, tmp_path):
+def test_leaving_a_cluster_cancels_its_running_and_waiting_tasks(
+    course, scheduler, start, tmp_path
+):
     start_worker(start, scheduler.address)
     task = GradingTask(notebook=answered(course, f'# wait {tmp_path / "go"}\n{RIGHT}'), seed='abc')
     with connected(scheduler.address, Certificates()) as onlooker:
@@ -165,7 +169,7 @@ def test_leaving_calls_off_what_is_under_way_and_what_waits(course, scheduler, s
     assert all(isinstance(work.exception(timeout=60), ClusterError) for work in works)
 
 
-def test_a_client_that_has_given_its_scheduler_up_is_looked_after_no_more(monkeypatch):
+def test_a_client_that_has_given_up_its_scheduler_is_no_longer_watched(monkeypatch):
     monkeypatch.setattr(dask_backend, 'LOOK_SEC', 0.0)
     its = SimpleNamespace(_left=Event(), _address='', _client=SimpleNamespace(scheduler_info=dict))
     Cluster._look_after(its)  # returns, and says nothing
@@ -173,7 +177,7 @@ def test_a_client_that_has_given_its_scheduler_up_is_looked_after_no_more(monkey
 
 
 @pytest.mark.slow
-def test_with_certificates_it_speaks_tls_and_to_nobody_without_them(course, start, tmp_path):
+def test_a_cluster_with_certificates_is_reached_by_tls_alone(course, start, tmp_path):
     cert, key = str(tmp_path / 'cert.pem'), str(tmp_path / 'key.pem')
     own = ['openssl', 'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1']
     name = ['-subj', '/CN=toy', '-addext', 'subjectAltName=IP:127.0.0.1']

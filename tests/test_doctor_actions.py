@@ -1,4 +1,4 @@
-"""Planted faults of actions: each is named first; a server that is right is left alone."""
+"""Each planted fault of an action is reported first; a correct server has no fault."""
 
 import pytest
 from my_robot_basics.doctor.action_evidence import ActionEvidence, StandingGoal
@@ -42,13 +42,13 @@ class Sender(Node):
 
 
 def told(name='/move_arm'):
-    """What the doctor says of an action, and the titles of what it finds."""
+    """Return the doctor's report on an action, and the titles of its findings."""
     [diagnosis] = diagnose(name, domain_id=classroom.enter())
     return ' '.join(tell(diagnosis).split()), [each.title for each in diagnosis.findings]
 
 
 @pytest.mark.slow
-def test_a_server_that_is_right_is_left_alone():
+def test_no_fault_is_found_in_a_correct_action_server():
     run(MoveArmServer)
     sender = run(Sender)
     sender.send()
@@ -57,7 +57,7 @@ def test_a_server_that_is_right_is_left_alone():
 
 
 @pytest.mark.slow
-def test_a_goal_that_goes_on_is_no_fault():
+def test_a_goal_in_progress_is_not_reported_as_a_fault():
     run(MoveArmServer)
     run(Sender, goal=MoveArm.Goal(position=[1.5, 0.0], speed=0.01)).send()
     said, titles = told()
@@ -66,7 +66,7 @@ def test_a_goal_that_goes_on_is_no_fault():
 
 
 @pytest.mark.slow
-def test_without_a_server_the_line_that_makes_one_is_shown():
+def test_a_missing_action_server_is_reported_with_the_line_that_makes_one():
     run(Sender)
     said, titles = told()
     assert titles == ['no action server']
@@ -75,7 +75,7 @@ def test_without_a_server_the_line_that_makes_one_is_shown():
 
 
 @pytest.mark.slow
-def test_a_name_that_is_misspelt_is_found():
+def test_a_misspelt_action_name_is_reported():
     run(MoveArmServer)
     run(Sender, name='/movearm')
     said, titles = told('/movearm')
@@ -113,7 +113,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(('node_class', 'title', 'words'), FAULTS)
-def test_what_becomes_of_a_goal_is_told(node_class, title, words):
+def test_a_goal_that_ends_wrongly_or_not_at_all_is_reported(node_class, title, words):
     run(node_class)
     sender = run(Sender)
     sender.send()
@@ -124,7 +124,7 @@ def test_what_becomes_of_a_goal_is_told(node_class, title, words):
     assert words in said
 
 
-# --- rules on evidence that is made up -----------------------------------------------------------
+# --- rules on made-up evidence -------------------------------------------------------------------
 
 SERVER = Endpoint(
     kind='server', node_name='/arm', name='/a', type_name='arm_interfaces/action/MoveArm'
@@ -139,7 +139,7 @@ def found(**seen):
     return [(each.title, each.code) for each in judge(evidence).findings]
 
 
-def test_two_types_are_named_and_the_servers_is_right():
+def test_different_types_are_reported_with_a_fix_for_the_client():
     line = "self.client = ActionClient(self, MoveArm, '/a')"
     assert found(endpoints=(SERVER, CLIENT)) == [('types differ', line)]
 
@@ -152,11 +152,11 @@ def test_two_types_are_named_and_the_servers_is_right():
         ('canceling', 'goal_handle.canceled()'),
     ],
 )
-def test_each_state_in_which_a_goal_stands_still_has_its_line(state, line):
+def test_each_state_of_a_stalled_goal_has_its_own_fix(state, line):
     goals = (StandingGoal(state=state, seconds=3.2),)
     assert found(goals=goals) == [('a goal does not go on', line)]
 
 
-def test_a_callback_that_raised_could_set_no_status():
+def test_a_callback_that_raised_is_not_also_reported_for_an_unset_status():
     raised = (('/arm', "KeyError('joint3')"),)
     assert found(raised=raised, unset=frozenset({'/arm'})) == [('the execute callback raised', '')]

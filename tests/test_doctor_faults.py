@@ -1,4 +1,4 @@
-"""Planted faults: each is named first, and its fix, applied literally, lets messages arrive."""
+"""Each planted fault is reported first; its fix, applied literally, lets messages arrive."""
 
 import contextlib
 import shlex
@@ -104,7 +104,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize('fault', FAULTS)
-def test_a_wrong_line_is_named_first_and_fixed(fault):
+def test_a_planted_fault_in_a_line_is_reported_first_and_fixed(fault):
     source, line, wrong, title = FAULTS[fault]
     edits = {TALKER: [], LISTENER: []}
     edits[source] = [(line, wrong)]
@@ -124,7 +124,7 @@ def test_a_wrong_line_is_named_first_and_fixed(fault):
 
 
 @pytest.mark.slow
-def test_a_clock_that_nobody_drives_is_named_and_given_back():
+def test_sim_time_without_a_clock_is_reported_and_its_fix_works():
     run(node_class(TALKER), parameter_overrides=[Parameter('use_sim_time', value=True)])
     listener = run(node_class(LISTENER))
     found = first_finding(seconds=2.0)
@@ -137,7 +137,7 @@ def test_a_clock_that_nobody_drives_is_named_and_given_back():
 
 
 @pytest.mark.slow
-def test_a_publisher_that_nobody_spins():
+def test_a_publisher_that_is_not_spun_is_reported_and_its_fix_works():
     listener = run(node_class(LISTENER))
     with process(program(TALKER, (SPIN, DEAD))):
         found = wait_for_finding(first_finding, 'the node is not spinning', seconds=2.0)
@@ -146,7 +146,7 @@ def test_a_publisher_that_nobody_spins():
 
 
 @pytest.mark.slow
-def test_two_types():
+def test_two_types_on_a_topic_are_reported_and_the_fix_works():
     # in one process rclpy itself refuses the second one
     other = SUBSCRIPTION.replace('JointState,', 'Point,')
     run(node_class(LISTENER, (SUBSCRIPTION, other)))
@@ -157,7 +157,7 @@ def test_two_types():
 
 
 @pytest.mark.slow
-def test_a_type_that_is_not_installed_here(monkeypatch):
+def test_a_message_type_that_is_not_installed_is_reported(monkeypatch):
     listener = run(node_class(LISTENER))
     with process(program(TALKER)):
         assert wait_for(lambda: listener.heard)
@@ -171,7 +171,7 @@ def test_a_type_that_is_not_installed_here(monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_subscription_that_nobody_spins(tmp_path):
+def test_a_subscription_that_is_not_spun_is_reported_and_its_fix_works(tmp_path):
     run(node_class(TALKER))
     note = tmp_path / 'heard'
     write = (RECEIVE, f"open({str(note)!r}, 'w').close()")
@@ -183,7 +183,7 @@ def test_a_subscription_that_nobody_spins(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_latched_message_that_came_too_early():
+def test_a_late_joiner_that_missed_a_latched_message_is_reported_and_fixed():
     latched = PUBLISHER.replace(
         '10', 'QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)'
     )
@@ -198,7 +198,7 @@ def test_a_latched_message_that_came_too_early():
 
 
 @pytest.mark.slow
-def test_a_queue_that_is_shorter_than_a_burst(monkeypatch):
+def test_a_queue_that_is_shorter_than_a_burst_is_reported_and_its_fix_works(monkeypatch):
     monkeypatch.setattr(looking, 'ENOUGH_SEC', 2.5)
     burst = f"[{SEND} for message.header.frame_id in '{'a' * 40}']"
     run(
@@ -231,7 +231,7 @@ def stamps(listener):
 
 
 @pytest.mark.slow
-def test_a_remapped_publisher():
+def test_a_remapped_publisher_is_reported_and_its_fix_works():
     listener = run(node_class(LISTENER))
     command = program(TALKER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))
     with process([*command, '--ros-args', '-r', f'{TOPIC}:=/elsewhere']):
@@ -248,7 +248,7 @@ def test_a_remapped_publisher():
         ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'OFF'}, 'a process that cannot be discovered'),
     ],
 )
-def test_a_publisher_out_of_reach(environment, title):
+def test_a_publisher_out_of_reach_is_reported_and_its_fix_works(environment, title):
     listener = run(node_class(LISTENER))
     with neighbouring_domain() as neighbour:
         wrong = {name: value.format(neighbour=neighbour) for name, value in environment.items()}

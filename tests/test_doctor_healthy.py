@@ -1,4 +1,4 @@
-"""A healthy system is never accused: random ones, that resemble the faulty ones."""
+"""No fault is found in healthy systems: random ones, which resemble the faulty ones."""
 
 import math
 import random
@@ -64,7 +64,7 @@ class WallClock(Node):
 
 
 def offer_and_wish(rng):
-    """Two profiles that match."""
+    """Return an offered and a requested QoS profile that match."""
     reliable, keeps = rng.random() < 0.5, rng.random() < 0.5
     offer = QoSProfile(
         depth=rng.randint(1, 50),
@@ -98,7 +98,7 @@ def start_system(rng):
     for i, topic_name in enumerate(topic_names):
         type_ = rng.choice([JointState, JointState, String])
         offer, wish = offer_and_wish(rng)
-        # the last one has a listener of its own at most: it is not the one that is asked about
+        # only the first topic, which is asked about, always has a listener
         for j in range(rng.randint(1, 2)):
             name = f'talker_{i}_{j}'
             rate_hz = rng.choice([1, 5, 20, 100])
@@ -122,11 +122,11 @@ def assert_well(seed):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('seed', range(6))
-def test_half_a_dozen_healthy_systems(seed):
+def test_no_fault_is_found_in_half_a_dozen_healthy_systems(seed):
     assert_well(seed)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('seed', range(1000, 1200))
-def test_two_hundred_healthy_systems(seed):
+def test_no_fault_is_found_in_two_hundred_healthy_systems(seed):
     assert_well(seed)

@@ -1,4 +1,4 @@
-"""The two ways to ask: the console script with its exit status, and `live.why` in a notebook."""
+"""Two ways to ask the doctor: the console script and its exit status, `live.why` in a notebook."""
 
 import subprocess
 import sys
@@ -22,7 +22,7 @@ def _talker():
 @pytest.mark.slow
 @pytest.mark.starts
 @pytest.mark.usefixtures('_talker')
-def test_a_fault_and_then_all_is_well(capfd):
+def test_the_doctor_exits_with_1_for_a_fault_and_with_0_if_all_is_well(capfd):
     assert main([TOPIC]) == 1
     out, err = capfd.readouterr()
     assert out.startswith(f'Something is wrong on {TOPIC}: /talker publishes, nobody subscribes')
@@ -36,7 +36,7 @@ def test_a_fault_and_then_all_is_well(capfd):
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_a_service_is_asked_about_by_its_name(capfd):
+def test_a_service_is_diagnosed_by_its_name(capfd):
     run(patient_services.node_class(patient_services.SERVER))
     assert main([patient_services.NAME.removeprefix('/')]) == 0
     assert (
@@ -59,14 +59,14 @@ def test_a_service_is_asked_about_by_its_name(capfd):
         ([TOPIC, '--seconds', 'nan'], "invalid time in seconds value: 'nan'"),
     ],
 )
-def test_wrong_usage(capsys, words, complaint):
+def test_wrong_arguments_are_reported_with_exit_code_2(capsys, words, complaint):
     with pytest.raises(SystemExit) as stopped:
         main(words)
     assert stopped.value.code == 2
     assert complaint in capsys.readouterr().err
 
 
-def test_a_domain_that_cannot_be(monkeypatch, capsys):
+def test_an_invalid_domain_id_is_reported_with_exit_code_2(monkeypatch, capsys):
     monkeypatch.setenv('ROS_DOMAIN_ID', 'mine')
     with pytest.raises(SystemExit) as stopped:
         main([TOPIC])
@@ -87,7 +87,7 @@ def test_help_needs_no_ros():
     assert done.stdout.splitlines()[-1] == 'False'
 
 
-def test_a_notebook_asks_for_a_topic_with_an_impossible_name():
+def test_a_notebook_that_asks_about_an_impossible_name_gets_an_error():
     with pytest.raises(NoSuchName, match='is not the name of a topic or a service'):
         why('/joint states')
     with pytest.raises(NoSuchName, match='is not a text: expected the name of a topic'):
@@ -116,7 +116,7 @@ WANTED = ('stream', 'display_data', 'error')
 
 @pytest.mark.slow
 @pytest.mark.starts
-def test_a_notebook_shows_the_answer_and_a_picture_as_often_as_it_is_asked(cell):
+def test_a_notebook_shows_the_diagnosis_and_a_picture_each_time(cell):
     ask = f"from my_robot_basics import live\nlive.why('{TOPIC}')"
     for _ in range(2):
         said, shown = cell(ask)

@@ -41,7 +41,7 @@ def both_ends():
 @pytest.mark.starts
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(offered=PROFILES, asked=PROFILES)
-def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
+def test_the_qos_diagnosis_agrees_with_whether_messages_arrive(both_ends, offered, asked):
     sender, receiver = both_ends
     received = []
     publisher = sender.node.create_publisher(String, '/qos', QoSProfile(**offered))
@@ -75,7 +75,7 @@ def test_the_diagnosis_agrees_with_what_arrives(both_ends, offered, asked):
 
 
 @given(offered=PROFILES, asked=PROFILES)
-def test_the_fix_of_any_profile_is_content_with_the_offer(offered, asked):
+def test_the_fix_for_any_profile_is_compatible_with_the_offer(offered, asked):
     given_, wanted = infinite(QoSProfile(**offered)), infinite(QoSProfile(**asked))
     gaps = qos.incompatible(given_, wanted)
     if gaps:

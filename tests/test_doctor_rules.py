@@ -23,7 +23,7 @@ from my_robot_basics.doctor.rules import judge
         healthy(position=(float('nan'), float('inf'))),
     ],
 )
-def test_a_healthy_topic_is_not_accused(evidence):
+def test_no_fault_is_found_in_a_healthy_topic(evidence):
     assert judge(evidence).findings == ()
 
 
@@ -84,7 +84,7 @@ TALKER, LISTENER = healthy().endpoints
         ),
     ],
 )
-def test_what_follows_from_what_was_seen(evidence, titles):
+def test_each_evidence_of_a_topic_leads_to_its_findings(evidence, titles):
     assert [finding.title for finding in judge(evidence).findings] == titles
 
 
@@ -95,14 +95,14 @@ def test_what_follows_from_what_was_seen(evidence, titles):
         ('/listener', {}, 'the callback is called'),
     ],
 )
-def test_what_a_node_that_is_not_spinning_does_not_do_is_told(node_name, received, job):
+def test_a_node_that_is_not_spinning_is_reported_with_the_consequence(node_name, received, job):
     seen = replaced(nodes={node_name: NodeState(answers=False)}, **received)
     (finding,) = judge(seen).findings
     assert finding.expected == f'{node_name} to be spun, so that {job}'
 
 
 def with_bursts(*firsts, number=6, depth=1):
-    """100 Hz from a queue of that depth, in which `number` messages each came at once."""
+    """Return evidence of 100 Hz in which, at each of `firsts`, `number` messages came at once."""
     evidence = healthy(rate_hz=100.0, number=200)
     received = list(evidence.received)
     for first in firsts:
@@ -123,14 +123,14 @@ def with_bursts(*firsts, number=6, depth=1):
         (with_bursts(*range(0, 180, 10), depth=5), ['messages lost to a short queue']),
         (with_bursts(*range(0, 180, 10), depth=6), []),  # a whole burst has room in it
         (with_bursts(*range(0, 195, 8), number=5), ['messages lost to a short queue']),
-        (with_bursts(*range(0, 195, 8), number=4), []),  # so few are no burst
+        (with_bursts(*range(0, 195, 8), number=4), []),  # so few messages are no burst
     ],
 )
-def test_who_sends_in_bursts_does_it_again_and_again(evidence, titles):
+def test_only_repeated_bursts_that_exceed_the_queue_are_reported(evidence, titles):
     assert [finding.title for finding in judge(evidence).findings] == titles
 
 
-def test_the_waiting_one_of_two_similar_names_is_meant():
+def test_the_publisher_without_a_subscription_is_blamed_for_a_similar_name():
     met = '/kinematics/joint_statez'
     ends = (
         LISTENER,
@@ -142,13 +142,13 @@ def test_the_waiting_one_of_two_similar_names_is_meant():
     assert first.broken[0].node_name == '/lonely'
 
 
-def test_a_misspelt_question_is_answered_with_the_right_one():
+def test_a_misspelt_topic_name_is_answered_with_the_correct_command():
     asked = replaced(name='/kinematic/joint_state', **SILENT)
     first = judge(asked).findings[0]
     assert first.code == f'$ topic_doctor {TOPIC}'
 
 
-def test_an_empty_domain_sends_to_the_others():
+def test_an_empty_domain_is_reported_with_a_hint_at_other_domains():
     empty = replaced(endpoints=(), nodes={}, **SILENT)
     assert '--domains' in judge(empty).findings[0].fix
     looked = replaced(empty, elsewhere={7: (LISTENER,)})
@@ -186,7 +186,7 @@ def test_remapping_rules_are_read_from_command_lines(words, rules):
     ('environment', 'domain_id', 'is_seen'),
     [('ROS_DOMAIN_ID=7', 7, True), ('ROS_DOMAIN_ID=7', 8, False), ('HOME=/', 0, True)],
 )
-def test_who_was_started_in_another_domain_is_not_meant(
+def test_remappings_of_processes_in_a_different_domain_are_ignored(
     monkeypatch, tmp_path, environment, domain_id, is_seen
 ):
     process = tmp_path / '4711'
@@ -209,7 +209,7 @@ def test_the_report_names_rate_and_faults_in_order():
         'saw',
         'to do',
     ]
-    # a line of code is left whole, to be copied
+    # lines of code are not wrapped, so that they can be copied
     assert max(len(line) for line in lines[2:] if 'self.' not in line) <= 90
 
 
@@ -222,13 +222,13 @@ def test_the_report_names_rate_and_faults_in_order():
         (replaced(**SILENT), 'broken: /talker (the timer never fires)'),
     ],
 )
-def test_the_picture_says_in_words_what_it_shows(evidence, text):
+def test_the_picture_of_a_topic_has_a_description_in_words(evidence, text):
     diagnosis = judge(evidence)
     assert text in picture.describe(diagnosis)
     assert picture.draw(diagnosis).startswith(b'\x89PNG')
 
 
-def test_a_callback_that_holds_a_topic_up_is_named_there_too():
+def test_a_deadlock_is_reported_on_the_topic_that_it_holds_up():
     waits = dataclasses.replace(DEADLOCK, node_name='/talker', holds=('/talker',))
     seen = replaced(nodes={'/talker': NodeState(answers=False)}, callbacks=(waits,), **SILENT)
     assert judge(seen).findings[0].title == 'a callback waits for its own executor (deadlock)'

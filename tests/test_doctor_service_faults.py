@@ -1,4 +1,4 @@
-"""Planted faults of services: each is named first; if the fix is one line, that line fixes it."""
+"""Each planted fault of a service is reported first; a fix of one line, if any, works."""
 
 import contextlib
 import re
@@ -76,7 +76,7 @@ def assert_well(asker):
 
 
 def start(asker_edits, **options):
-    """A server, and a client that begins to wait."""
+    """Start a server, and a client that begins to wait; return the client."""
     run(node_class(SERVER))
     asker = run(node_class(ASKER, *asker_edits), **options)
     assert wait_for(lambda: asker.timer.is_canceled())
@@ -94,7 +94,7 @@ NAMES = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize('fault', NAMES)
-def test_a_wrong_name_is_named_first_and_fixed(fault):
+def test_a_wrong_service_name_is_reported_first_and_fixed(fault):
     source, line, name, title = NAMES[fault]
     edits = {SERVER: [], ASKER: []}
     edits[source] = [(line, line.replace(NAME, name))]
@@ -108,7 +108,7 @@ def test_a_wrong_name_is_named_first_and_fixed(fault):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('asked', [NAME, f'/left{NAME}'])
-def test_a_relative_name_is_named_where_it_is_written(asked):
+def test_a_relative_name_is_reported_in_the_node_that_uses_it(asked):
     run(node_class(SERVER))
     relative = (IN_GROUP, IN_GROUP.replace(NAME, NAME[1:]))
     run(node_class(ASKER, relative), namespace='/left')
@@ -121,7 +121,7 @@ def test_a_relative_name_is_named_where_it_is_written(asked):
 
 
 @pytest.mark.slow
-def test_a_client_without_a_server():
+def test_a_client_without_a_server_is_reported_and_the_fix_works():
     run(node_class(ASKER))
     found = first_finding()
     assert found.title == 'no server'
@@ -131,7 +131,7 @@ def test_a_client_without_a_server():
 
 
 @pytest.mark.slow
-def test_two_types():
+def test_two_types_of_a_service_are_reported_and_the_fix_works():
     # in one process rclpy itself refuses the second one
     run(node_class(ASKER, (IN_GROUP, CLIENT.replace('SetBool', 'Trigger'))))
     with process(program(SERVER)):
@@ -153,7 +153,7 @@ DEADLOCKS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize('fault', DEADLOCKS)
-def test_a_client_that_blocks_its_own_executor(fault):
+def test_a_client_that_blocks_its_executor_is_reported_and_fixed(fault):
     edits, why = DEADLOCKS[fault]
     asker = start(edits)
     assert wait_for(lambda: asker.client._pending_requests)
@@ -201,7 +201,9 @@ def spun(node, executor):
     ],
 )
 @pytest.mark.filterwarnings('ignore:MultiThreadedExecutor is used with a single thread')
-def test_calls_in_several_threads(group, threads, why):
+def test_a_call_with_threads_is_reported_only_if_no_thread_can_take_the_response(
+    group, threads, why
+):
     run(node_class(SERVER, (WORK, 'time.sleep(1.5)')))
     asker = node_class(ASKER, (ASK, CALL))(group=group())
     with spun(asker, MultiThreadedExecutor(threads)):
@@ -214,7 +216,7 @@ def test_calls_in_several_threads(group, threads, why):
 
 
 @pytest.mark.slow
-def test_a_server_that_calls_itself():
+def test_a_server_that_calls_itself_is_reported():
     other = '/open_gripper'
     asks = f"self.create_client(SetBool, '{other}').call(request, timeout_sec=30.0)"
     serves = f"{SERVICE}; self.create_service(SetBool, '{other}', self.answer)"
@@ -233,7 +235,7 @@ def inside_callbacks(name):
 
 
 @pytest.mark.slow
-def test_a_callback_that_looks_again_and_again_for_its_response():
+def test_a_callback_that_polls_for_its_response_is_reported_and_fixed():
     asker = start([(ASK, POLL)])
     found = first_finding()
     assert found.title == 'a callback has not returned'
@@ -243,7 +245,7 @@ def test_a_callback_that_looks_again_and_again_for_its_response():
 
 
 @pytest.mark.slow
-def test_a_callback_that_waits_for_an_absent_server():
+def test_a_callback_that_waits_for_an_absent_server_is_reported_and_fixed():
     run(node_class(ASKER, (IF_READY, 'if self.client.wait_for_service(30.0):')))
     assert wait_for(lambda: inside_callbacks('ask'))
     first, second = findings()
@@ -256,7 +258,7 @@ def test_a_callback_that_waits_for_an_absent_server():
 
 
 @pytest.mark.slow
-def test_a_server_that_returns_no_response():
+def test_a_server_that_returns_no_response_is_reported_and_fixed():
     run(node_class(SERVER, (RETURN, 'pass')))
     run(node_class(ASKER))
     assert wait_for(lambda: troubles.of_service(NAME))
@@ -267,7 +269,7 @@ def test_a_server_that_returns_no_response():
 
 
 @pytest.mark.slow
-def test_a_server_that_raises():
+def test_a_server_that_raises_is_reported_with_its_exception():
     run(node_class(SERVER, (WORK, "raise ValueError('it is jammed')")))
     run(node_class(ASKER))
     assert wait_for(lambda: troubles.of_service(NAME))
@@ -279,7 +281,7 @@ def test_a_server_that_raises():
 
 
 @pytest.mark.slow
-def test_what_another_callback_raised_is_not_laid_to_the_service():
+def test_an_exception_of_a_timer_is_not_attributed_to_the_service():
     run(node_class(SERVER, (SERVICE, f'{SERVICE}; self.create_timer(0.1, lambda: 1 / 0)')))
     asker = run(node_class(ASKER))
     assert wait_for(lambda: troubles.times('/server') > 1)
@@ -287,7 +289,7 @@ def test_what_another_callback_raised_is_not_laid_to_the_service():
 
 
 @pytest.mark.slow
-def test_a_server_whose_callback_does_not_return():
+def test_a_server_whose_callback_does_not_return_is_reported():
     server = run(node_class(SERVER, (WORK, 'while rclpy.ok() and self.taken: time.sleep(0.05)')))
     asker = run(node_class(ASKER))
     assert wait_for(lambda: server.taken)
@@ -302,7 +304,7 @@ def test_a_server_whose_callback_does_not_return():
 
 
 @pytest.mark.slow
-def test_a_server_that_nobody_spins():
+def test_a_server_that_is_not_spun_is_reported():
     server = node_class(SERVER)()
     asker = run(node_class(ASKER))
     assert wait_for(lambda: asker.timer.is_canceled())
@@ -315,7 +317,7 @@ def test_a_server_that_nobody_spins():
 
 
 @pytest.mark.slow
-def test_a_server_of_another_process_that_nobody_spins():
+def test_a_server_that_is_not_spun_in_another_process_is_reported_and_fixed():
     with process(program(SERVER, (SPIN, DEAD))):
         assert wait_for(has_server)
         found = first_finding()
@@ -334,7 +336,7 @@ def has_server():
 
 
 @pytest.mark.slow
-def test_a_client_that_nobody_spins_and_that_waits():
+def test_a_client_that_is_not_spun_is_reported_once_it_waits():
     run(node_class(SERVER))
     user = Node('user')
     client = user.create_client(SetBool, NAME)
@@ -348,7 +350,7 @@ def test_a_client_that_nobody_spins_and_that_waits():
 
 
 @pytest.mark.slow
-def test_a_client_whose_node_was_taken_from_its_executor():
+def test_a_client_whose_node_was_taken_from_its_executor_is_reported():
     asker = start([(ASK, SPIN_HERE.replace('30.0', '0.5'))])
     assert wait_for(lambda: asker not in asker.executor.get_nodes())
     found = first_finding()
@@ -357,7 +359,7 @@ def test_a_client_whose_node_was_taken_from_its_executor():
 
 
 @pytest.mark.slow
-def test_a_remapped_server():
+def test_a_remapped_server_is_reported_and_its_fix_works():
     run(node_class(ASKER))
     command = program(SERVER, ('rclpy.init()', 'import sys; rclpy.init(args=sys.argv)'))
     with process([*command, '--ros-args', '-r', f'{NAME}:=/elsewhere']):
@@ -367,7 +369,7 @@ def test_a_remapped_server():
 
 
 @pytest.mark.slow
-def test_two_servers_of_one_name_both_work_and_one_is_listened_to():
+def test_two_servers_of_one_name_are_reported_as_several_servers():
     run(node_class(SERVER))
     second = run(Node, 'second')
     worked = []
@@ -380,7 +382,7 @@ def test_two_servers_of_one_name_both_work_and_one_is_listened_to():
 
 
 @pytest.mark.slow
-def test_a_server_in_another_domain():
+def test_a_server_in_another_domain_is_reported():
     claim = domain.claim()
     name = f'{NAME}_{claim.domain_id}'  # tests beside this one have servers, too
     run(node_class(ASKER, (IN_GROUP, IN_GROUP.replace(NAME, name))))

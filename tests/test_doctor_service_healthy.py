@@ -1,4 +1,4 @@
-"""Honest servers and clients of every kind are never accused, however long an answer takes."""
+"""No fault is found in correct servers and clients, however long a response takes."""
 
 import threading
 
@@ -103,7 +103,7 @@ def assert_well():
 @pytest.mark.slow
 @pytest.mark.parametrize('work_sec', [0.0, 2.0])
 @pytest.mark.parametrize('kind', CLIENTS)
-def test_an_honest_client_of_a_quick_and_of_a_slow_server(kind, work_sec):
+def test_no_fault_is_found_in_a_client_of_a_quick_or_slow_server(kind, work_sec):
     server = run(node_class(SERVER, (WORK, f'time.sleep({work_sec})')))
     with asker(*CLIENTS[kind]) as node:
         assert wait_for(lambda: server.taken)
@@ -114,7 +114,7 @@ def test_an_honest_client_of_a_quick_and_of_a_slow_server(kind, work_sec):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('kind', ['add_done_callback', 'await', 'call with threads'])
-def test_a_slow_server_of_another_process(kind):
+def test_no_fault_is_found_in_a_slow_server_of_another_process(kind):
     with process(program(SERVER, (WORK, 'time.sleep(2.0)'))), asker(*CLIENTS[kind]) as node:
         assert wait_for(lambda: node.timer.is_canceled())
         assert_well()
@@ -133,7 +133,7 @@ SERVERS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize('kind', SERVERS)
-def test_an_honest_server(kind):
+def test_no_fault_is_found_in_a_correct_server(kind):
     run(node_class(SERVER, SERVERS[kind]))
     node = run(node_class(ASKER))
     assert wait_for(lambda: node.answered)
@@ -141,13 +141,13 @@ def test_an_honest_server(kind):
 
 
 @pytest.mark.slow
-def test_a_server_that_nobody_asks():
+def test_no_fault_is_found_in_a_server_without_clients():
     run(node_class(SERVER))
     assert '/server serves, nobody asks' in assert_well()
 
 
 @pytest.mark.slow
-def test_nodes_without_parameters_in_another_process():
+def test_no_fault_is_found_in_nodes_without_parameter_services():
     bare = ('**kwargs)\n', 'start_parameter_services=False)\n')
     with process(program(SERVER, bare)), asker(*CLIENTS['await']) as node:
         assert wait_for(lambda: node.answered)
@@ -155,7 +155,7 @@ def test_nodes_without_parameters_in_another_process():
 
 
 @pytest.mark.slow
-def test_a_server_that_is_asked_without_end():
+def test_no_fault_is_found_in_a_server_with_endless_requests():
     run(node_class(SERVER, (WORK, 'time.sleep(0.3)')))
     ask = 'self.timer.reset(); self.client.call_async(request)'
     run(node_class(ASKER, (ASK, ask)))
@@ -163,7 +163,7 @@ def test_a_server_that_is_asked_without_end():
 
 
 @pytest.mark.slow
-def test_a_program_that_spins_its_node_only_when_it_asks():
+def test_no_fault_is_found_if_a_node_is_spun_only_for_its_requests():
     run(node_class(SERVER))
     user = Node('user')
     client = user.create_client(SetBool, NAME)
@@ -174,7 +174,7 @@ def test_a_program_that_spins_its_node_only_when_it_asks():
 
 
 @pytest.mark.slow
-def test_a_request_that_was_lost_is_told_and_is_no_fault():
+def test_a_lost_request_is_mentioned_but_is_no_fault():
     user = run(Node, 'user')
     client = user.create_client(SetBool, NAME)
     lost = client.call_async(SetBool.Request())
@@ -190,7 +190,7 @@ def test_a_request_that_was_lost_is_told_and_is_no_fault():
 
 
 @pytest.mark.slow
-def test_other_services_of_similar_names_have_their_own_clients():
+def test_services_of_similar_names_with_their_own_clients_are_no_fault():
     for side in 'left', 'right':
         run(node_class(SERVER, (NAME, f'/{side}{NAME}'), ("'server'", f"'{side}'")), key=side)
         run(
@@ -202,7 +202,7 @@ def test_other_services_of_similar_names_have_their_own_clients():
 
 
 @pytest.mark.slow
-def test_a_topic_and_a_service_of_one_name_are_both_looked_at():
+def test_a_topic_and_a_service_of_one_name_are_both_diagnosed():
     server = run(node_class(SERVER))
     publisher = server.create_publisher(Empty, NAME, 10)
     server.create_timer(0.1, lambda: publisher.publish(Empty()))

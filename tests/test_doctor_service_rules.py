@@ -100,19 +100,19 @@ UNANSWERED = (Unanswered(node_name=WAVER, seconds=1.2),)
         (healthy_service(visible=HERE, unanswered=UNANSWERED), []),
     ],
 )
-def test_what_follows_from_what_was_seen_of_a_service(evidence, titles):
+def test_each_evidence_of_a_service_leads_to_its_findings(evidence, titles):
     assert [finding.title for finding in service_rules.judge(evidence).findings] == titles
 
 
 @pytest.mark.parametrize(
     ('asker', 'wrong', 'right'),
     [
-        # who asks has made the name relative, or has another one in mind
+        # the client has made its name relative, or it wants a different service
         (service_end('client', '/left/waver', name=f'/left{NAME}'), '/left/waver', NAME),
         (service_end('client', '/waver', name=f'/left{NAME}'), GRIPPER, f'/left{NAME}'),
     ],
 )
-def test_the_end_with_the_relative_name_is_to_be_edited(asker, wrong, right):
+def test_the_fix_of_a_wrong_namespace_names_the_node_to_edit(asker, wrong, right):
     evidence = healthy_service(name=f'/left{NAME}', endpoints=(SERVES, asker))
     first = service_rules.judge(evidence).findings[0]
     assert first.broken[0].node_name == wrong
@@ -130,7 +130,7 @@ def test_the_end_with_the_relative_name_is_to_be_edited(asker, wrong, right):
         (silent(GRIPPER), 'it has answered nothing for at least 3 s'),
     ],
 )
-def test_a_report_on_a_service(evidence, told):
+def test_a_report_on_a_service_names_nodes_and_waiting_times(evidence, told):
     assert told in ' '.join(report.tell(service_rules.judge(evidence)).split())
 
 
@@ -143,7 +143,7 @@ def test_a_report_on_a_service(evidence, told):
         healthy_service(visible=frozenset({WAVER}), unanswered=UNANSWERED),
     ],
 )
-def test_a_request_is_called_lost_only_if_it_is(evidence):
+def test_a_request_that_may_still_be_answered_is_not_called_lost(evidence):
     assert 'has no response' not in report.summary(evidence)
 
 
@@ -156,19 +156,19 @@ def test_a_request_is_called_lost_only_if_it_is(evidence):
         (silent(WAVER, callbacks=(DEADLOCK,)), f'broken: {WAVER} (a callback waits'),
     ],
 )
-def test_the_picture_of_a_service_says_in_words_what_it_shows(evidence, text):
+def test_the_picture_of_a_service_has_a_description_in_words(evidence, text):
     diagnosis = service_rules.judge(evidence)
     assert text in picture.describe(diagnosis)
     assert picture.draw(diagnosis).startswith(b'\x89PNG')
 
 
-def test_several_servers_are_named_with_what_comes_of_it():
+def test_several_servers_are_reported_with_the_consequence():
     evidence = healthy_service(endpoints=(SERVES, service_end('server', '/second'), ASKS))
     (finding,) = service_rules.judge(evidence).findings
     assert finding.seen.startswith('2 servers, of /gripper and /second: each of them works on')
 
 
-def test_a_web_page_says_the_same_and_leaves_lines_to_the_window():
+def test_a_report_as_html_has_the_words_of_the_report_as_text():
     evidence = healthy_service(endpoints=(service_end('client', '/<waver>'),))
     diagnosis = service_rules.judge(evidence)
     page, text = as_html.tell_as_html(diagnosis), report.tell(diagnosis)

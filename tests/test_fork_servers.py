@@ -41,7 +41,7 @@ def forked(loop):
 
 @pytest.fixture
 def no_servers():
-    """No server yet, and none left."""
+    """No fork server runs before the test, and none after it."""
     fork_servers.close_servers()
     fork_servers._unfit.clear()
     yield
@@ -49,7 +49,7 @@ def no_servers():
     fork_servers._unfit.clear()
 
 
-def test_a_server_holds_nothing_of_the_grader(forked):
+def test_a_fork_server_has_no_files_or_variables_of_the_grader(forked):
     server = server_of(forked)
     assert server.num_threads() == 1
     held = [
@@ -70,7 +70,7 @@ def test_a_server_holds_nothing_of_the_grader(forked):
 
 
 @pytest.mark.parametrize(('room', 'package'), [('student', 'live'), ('test', 'checks')])
-def test_what_each_kernel_needs_has_been_imported_once(loop, room, package):
+def test_a_fork_server_has_imported_all_modules_that_a_kernel_needs(loop, room, package):
     sandbox, kernel = loop.run(opened(room=room))
     try:
         code = f'from my_robot_basics import {package} as package\nimport json, sys\n'
@@ -81,7 +81,7 @@ def test_what_each_kernel_needs_has_been_imported_once(loop, room, package):
     assert set(imported) <= _held_by_a_server(room)
 
 
-def test_a_server_keeps_what_it_compiles_and_its_kernels_do_not(
+def test_a_fork_server_writes_bytecode_and_its_kernels_do_not(
     loop, monkeypatch, tmp_path, no_servers
 ):
     program = Path(
@@ -116,7 +116,7 @@ print(json.dumps([*sys.modules]))
 
 
 @pytest.mark.slow
-def test_students_and_tests_kernels_lie_differently_in_memory(loop, forked):
+def test_kernels_of_students_and_tests_come_from_different_servers(loop, forked):
     sandbox, test = loop.run(opened(room='test'))
     try:
         assert server_of(test) != server_of(forked)
@@ -139,7 +139,7 @@ def test_a_server_that_has_died_is_replaced(loop, forked):
 
 
 @pytest.mark.slow
-def test_many_are_forked_at_a_time_and_by_several_threads():
+def test_several_kernels_can_be_forked_at_once_and_by_several_threads():
     kernels = []
 
     async def some():
@@ -202,7 +202,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(('fault', 'why'), FAULTS.values(), ids=FAULTS)
-def test_what_can_not_be_forked_is_started_and_says_why(
+def test_a_kernel_that_cannot_be_forked_is_started_and_says_why(
     loop, monkeypatch, tmp_path, no_servers, fault, why
 ):
     program = Path(shutil.copytree(fork_servers._PROGRAM, tmp_path / 'forkserver'))
@@ -224,8 +224,8 @@ def test_what_can_not_be_forked_is_started_and_says_why(
 
 
 @pytest.mark.slow
-def test_a_python_of_ones_own_is_copied_first(loop, monkeypatch, no_servers):
-    """Its file could be changed through /proc/self/exe: the room's user would be its owner."""
+def test_a_kernel_runs_a_copy_of_a_python_owned_by_the_user(loop, monkeypatch, no_servers):
+    """Otherwise the room's user, who owns its file, could change it through /proc/self/exe."""
     python = Path('/proc/self/exe')
     monkeypatch.setattr(fork_servers, '_python', lambda: fork_servers._sealed_copy(python))
     sandbox, kernel = loop.run(opened())
@@ -253,7 +253,7 @@ def test_the_copy_of_python_can_not_be_changed(tmp_path):
 @pytest.mark.parametrize(
     ('user', 'owner', 'copied'), [(0, 0, False), (1000, 0, False), (1000, 1000, True)]
 )
-def test_only_a_python_of_ones_own_is_copied(monkeypatch, user, owner, copied):
+def test_python_is_copied_only_if_an_ordinary_user_owns_it(monkeypatch, user, owner, copied):
     monkeypatch.setattr(Path, 'stat', lambda path: type('Found', (), {'st_uid': owner}))
     monkeypatch.setattr(os, 'geteuid', lambda: user)
     with fork_servers._python() as python:

@@ -63,7 +63,7 @@ MEBIBYTE = 2**20
 
 @pytest.fixture(params=['forked', 'started'])
 def way(request, monkeypatch):
-    """How kernels begin."""
+    """Kernels are forked, or they are started."""
     if request.param == 'started':
         for room in ('student', 'test'):
             monkeypatch.setitem(fork_servers._unfit, room, 'the test says so')
@@ -133,7 +133,7 @@ MOMENTS = {
 
 @pytest.mark.parametrize('hit', [kill, terminate, kill_the_room])
 @pytest.mark.parametrize(('when', 'check', 'answer', 'delay_sec'), MOMENTS.values(), ids=MOMENTS)
-def test_a_kernel_that_is_ended_from_outside_is_no_zero(
+def test_a_kernel_ended_from_outside_is_ungraded_and_not_zero(
     monkeypatch, way, hit, when, check, answer, delay_sec
 ):
     struck = strike(monkeypatch, hit, when=when, delay_sec=delay_sec)
@@ -144,7 +144,9 @@ def test_a_kernel_that_is_ended_from_outside_is_no_zero(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('when', 'check', 'answer', 'delay_sec'), MOMENTS.values(), ids=MOMENTS)
-def test_ended_once_it_is_graded_in_fresh_rooms(monkeypatch, when, check, answer, delay_sec):
+def test_a_kernel_ended_once_from_outside_is_graded_in_fresh_rooms(
+    monkeypatch, when, check, answer, delay_sec
+):
     struck = strike(monkeypatch, kill, when=when, delay_sec=delay_sec, times=1)
     assert graded(check, answer).outcome == 'passed'
     assert len(struck) == 1
@@ -218,7 +220,7 @@ OWN_DOING = {
 
 
 @pytest.mark.parametrize(('answer', 'why'), OWN_DOING.values(), ids=OWN_DOING)
-def test_who_ends_their_own_kernel_gets_a_zero_that_says_so(way, answer, why):
+def test_an_answer_that_ends_its_own_kernel_fails_with_the_reason(way, answer, why):
     verdict = graded(ASKS, answer)
     assert verdict.outcome == 'failed'
     assert f'your cell `a` ended the kernel{": " + why if why else ""}' in verdict.reason
@@ -226,7 +228,7 @@ def test_who_ends_their_own_kernel_gets_a_zero_that_says_so(way, answer, why):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('number', [9, 15])
-def test_who_ends_it_while_a_check_asks_gets_a_zero_too(way, number):
+def test_an_answer_that_ends_its_kernel_during_a_check_fails(way, number):
     later = f'import os, threading; threading.Timer(1.0, os.kill, (os.getpid(), {number})).start()'
     assert graded(ASKS, f'{GOOD}\n{later}').outcome == 'failed'
 
@@ -241,7 +243,7 @@ def kill_a_child(process):
 
 
 @pytest.mark.slow
-def test_a_node_that_is_ended_from_outside_is_no_zero(monkeypatch, way):
+def test_a_node_ended_from_outside_is_ungraded_and_not_zero(monkeypatch, way):
     struck = strike(monkeypatch, kill_a_child, when='check', delay_sec=0.3)
     verdict = graded(NEEDS_NODE, answer_with_node())
     assert (verdict.outcome, len(struck)) == ('ungraded', 2)
@@ -250,7 +252,7 @@ def test_a_node_that_is_ended_from_outside_is_no_zero(monkeypatch, way):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('times', 'outcome'), [(1, 'passed'), (0, 'passed')])
-def test_a_node_that_lives_the_second_time_passes(monkeypatch, times, outcome):
+def test_a_node_that_survives_the_second_attempt_passes(monkeypatch, times, outcome):
     strike(monkeypatch, kill_a_child, when='check', delay_sec=0.3, times=times)
     assert graded(NEEDS_NODE, answer_with_node()).outcome == outcome
 
@@ -290,7 +292,7 @@ os.close(terminal)
         BY_ITS_TERMINAL,
     ],
 )
-def test_who_ends_their_own_node_gets_a_zero(way, own):
+def test_an_answer_that_ends_its_own_node_fails(way, own):
     assert graded(NEEDS_NODE, answer_with_node(f'{own}\n')).outcome == 'failed'
 
 
@@ -314,7 +316,7 @@ def in_any_time(monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('in_any_time')
-def test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so(way):
+def test_an_answer_that_uses_too_much_memory_twice_fails_with_the_reason(way):
     needs_cgroups()
     verdict = graded(ASKS, f'{GOOD}\n{HOG}')
     assert verdict.outcome == 'failed'
@@ -323,7 +325,7 @@ def test_who_uses_too_much_memory_twice_gets_a_zero_that_says_so(way):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures('in_any_time')
-def test_so_does_who_starts_a_program_that_does():
+def test_an_answer_whose_program_uses_too_much_memory_fails_with_a_note():
     needs_cgroups()
     hog = f'import subprocess, sys; node = subprocess.Popen([sys.executable, "-c", {HOG!r}])'
     more = '\nnode.wait()\n'
@@ -333,7 +335,7 @@ def test_so_does_who_starts_a_program_that_does():
 
 
 @pytest.mark.slow
-def test_memory_that_runs_out_elsewhere_is_no_zero(monkeypatch):
+def test_a_machine_out_of_memory_leaves_the_answer_ungraded(monkeypatch):
     """A real OOM: a neighbour eats what both may have, and Linux ends the student's kernel."""
     where = needs_cgroups()
     outer = where.folders['memory'] / f'mrb-outer-{os.getpid()}'
@@ -387,10 +389,10 @@ ENDINGS = [
 
 
 @pytest.mark.parametrize(('ending', 'memory', 'responsibility'), ENDINGS)
-def test_only_what_can_be_shown_is_the_students(ending, memory, responsibility):
+def test_students_are_responsible_only_for_endings_shown_as_theirs(ending, memory, responsibility):
     assert ending.whose(memory)[0] is responsibility
 
 
-def test_too_much_processor_time_is_the_students_own():
+def test_students_are_responsible_for_too_much_processor_time():
     ending = Ending(9, cpu_sec=max(PROCESS_LIMITS.values()))
     assert ending.whose(NO_MEMORY_LOST)[0] is Responsibility.STUDENTS

@@ -21,7 +21,7 @@ ENDS = {
     'raises': ('print(1); 1 / 0', False, '1\n'),
     'a syntax error': ('def f(:', False, ''),
     'stderr alone': ('import sys; print(1, file=sys.stderr)', True, '1\n'),
-    # a thread of ipykernel takes it over: what comes in the cell's very last moment may be lost
+    # a thread of ipykernel reads it: output of the cell's very last moment may be lost
     'a line of C code': (
         "import os, time; os.write(1, b'from C\\n'); time.sleep(1)", True, 'from C\n'
     ),
@@ -32,7 +32,7 @@ ENDS = {
 
 
 @pytest.mark.parametrize(('code', 'ran_to_end', 'text'), ENDS.values(), ids=ENDS)
-def test_a_cell_comes_to_its_end(shared, run_cell, code, ran_to_end, text):
+def test_a_cell_ends_and_its_kernel_stays_alive(shared, run_cell, code, ran_to_end, text):
     result = run_cell(shared, code)
     assert result.ran_to_end is ran_to_end
     assert text_of(result) == text
@@ -40,7 +40,7 @@ def test_a_cell_comes_to_its_end(shared, run_cell, code, ran_to_end, text):
     assert shared.alive
 
 
-def test_a_question_is_answered_only_where_somebody_answers(shared, run_cell):
+def test_input_fails_in_a_cell_unless_a_callback_answers(shared, run_cell):
     async def answer(prompt):
         return prompt.upper()
 
@@ -49,7 +49,7 @@ def test_a_question_is_answered_only_where_somebody_answers(shared, run_cell):
     assert run_cell(shared, "input('name? ')").error.ename == 'StdinNotImplementedError'
 
 
-def test_a_cell_does_not_pay_for_a_grader_that_stood_still(shared, loop):
+def test_a_stalled_grader_does_not_use_up_the_time_of_a_cell(shared, loop):
     async def stands_still_meanwhile():
         cell = asyncio.create_task(
             shared.run('import time; time.sleep(0.5); print(1)', timeout_sec=1.0)
@@ -62,13 +62,13 @@ def test_a_cell_does_not_pay_for_a_grader_that_stood_still(shared, loop):
     assert (text_of(result), result.timed_out) == ('1\n', False)
 
 
-def test_a_cell_is_waited_for_by_what_it_has_used(shared, loop):
+def test_waiting_for_a_cell_asks_how_much_time_the_cell_has_used(shared, loop):
     asked = []
     loop.run(shared.run('1', timeout_sec=10.0, used_sec=lambda: asked.append('…')))
     assert asked
 
 
-def test_an_answer_that_fails_is_an_error_at_once(own_kernel, loop):
+def test_a_failing_answer_to_input_raises_at_once(own_kernel, loop):
     async def answer(prompt):
         raise RuntimeError('no answer to ' + prompt)
 
@@ -88,7 +88,7 @@ def test_a_display_is_updated_from_a_later_cell(shared, run_cell):
     assert text_of(second) == 'done\n'
 
 
-def test_an_endless_cell_is_interrupted_and_costs_only_itself(spare_kernel, run_cell):
+def test_an_endless_cell_is_interrupted_and_later_cells_still_run(spare_kernel, run_cell):
     run_cell(spare_kernel, 'x = 5')
     result = run_cell(spare_kernel, 'while True: pass', timeout_sec=1.5)
     assert (result.timed_out, result.died, result.error.ename) == (
@@ -127,7 +127,7 @@ def test_a_busy_machine_gives_an_interrupted_cell_more_time(
     assert (result.timed_out, result.died) == (True, died)
 
 
-def test_no_busy_machine_gives_more_than_its_limit(monkeypatch, own_kernel, run_cell):
+def test_the_extra_time_of_a_busy_machine_is_limited(monkeypatch, own_kernel, run_cell):
     monkeypatch.setattr(timeouts.pressure, 'stalled_sec', time.monotonic)
     monkeypatch.setattr(timeouts, 'INTERRUPT_MOST_SEC', 1.0)
     assert run_cell(own_kernel, IGNORES, timeout_sec=3.0).died
@@ -149,7 +149,7 @@ def test_a_kernel_that_dies_is_noticed(spare_kernel, run_cell, code):
     assert (again.died, again.ran_to_end, again.outputs) == (True, False, [])
 
 
-def test_a_kernel_whose_cell_calls_exit_ends_with_it_and_that_is_nobodys_doubt(
+def test_a_kernel_whose_cell_calls_exit_ends_without_doubt_about_the_cause(
     spare_kernel, loop, run_cell
 ):
     result = run_cell(spare_kernel, 'exit()')
