@@ -1,6 +1,8 @@
 """Predictions: what a dict must hold, what is said about wrong ones, which points remain."""
 
+import ast
 import math
+import re
 import sys
 from collections import OrderedDict
 
@@ -10,6 +12,8 @@ from my_robot_basics.checks import CheckFailed, Predictions
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import PartlyRight
 from my_robot_basics.graph import watcher as stage_watchers
+
+from grader.course import ROOT
 
 KEYS = 'arrives', 'is_lost'
 
@@ -92,11 +96,17 @@ def test_wrong_predictions_leave_no_points_if_only_a_part_was_run(monkeypatch):
     assert not isinstance(failure.value, PartlyRight)
 
 
-def test_guessing_earns_next_to_nothing():
+def test_guessing_earns_next_to_nothing_in_lesson_1():
     """Of nine predictions two are known from the visible part; the rest are thrown."""
+    lesson = (ROOT / 'solutions/01_topics/01_topics.ipynb').read_text(encoding='utf-8')
+    ((left,),) = [re.findall(r'predictions\.conclude\(points=({.+?})\)', lesson)]
+    points = ast.literal_eval(left)
+    assert max(points) == 9
     thrown = [math.comb(7, right) / 2**7 for right in range(8)]
-    points = [{9: 2, 8: 1, 7: 1}.get(2 + right, 0) for right in range(8)]
-    assert sum(p * n for p, n in zip(thrown, points, strict=True)) < 0.25
+    earned = [
+        max((p for n, p in points.items() if n <= 2 + right), default=0) for right in range(8)
+    ]
+    assert sum(p * n for p, n in zip(thrown, earned, strict=True)) < 0.25
 
 
 @pytest.mark.parametrize(

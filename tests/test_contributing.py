@@ -38,7 +38,9 @@ def test_the_row_of_a_check_makes_it_public(example):
     assert checks.expect_text is example.expect_text
 
 
-@pytest.mark.parametrize('name', ['test_the_text_is_found', 'test_another_text_is_told'])
+@pytest.mark.parametrize(
+    'name', ['test_the_expected_text_passes', 'test_another_text_is_reported']
+)
 def test_the_test_of_a_check_passes(name, example, run):
     names = {}
     exec(blocks_of('A check')[1], names)

@@ -242,7 +242,11 @@ def test_a_closed_watcher_leaves_no_thread_node_or_callback():
 def test_a_wait_ends_if_its_context_is_shut_down():
     executor = LeanExecutor(context=new_context(classroom.enter()))
     executor.spin_once(timeout_sec=0.1)
-    executor.context.shutdown()
+    later = threading.Timer(0.3, executor.context.shutdown)
+    later.start()
     with pytest.raises(ExternalShutdownException):
-        executor.spin_once(timeout_sec=10.0)
+        executor.spin_once(timeout_sec=60.0)
+    later.join()
+    with pytest.raises(ExternalShutdownException):
+        executor.spin_once(timeout_sec=60.0)
     executor.shutdown()

@@ -1,5 +1,7 @@
 """The table [lti] of class.toml: its faults are reported, and a claim is mapped to a user."""
 
+import grp
+import os
 import sys
 import tomllib
 from dataclasses import replace
@@ -153,6 +155,11 @@ def test_a_long_name_is_shortened_in_the_error():
 def test_is_member_is_true_only_for_a_user_in_the_group(monkeypatch):
     monkeypatch.undo()
     assert lti_users.is_member('daemon', 'daemon')
+    listed = {'daemon': [1, grp.getgrnam('adm').gr_gid]}
+    with monkeypatch.context() as patch:  # a group that lists the user as a member
+        patch.setattr(os, 'getgrouplist', lambda name, primary: listed.get(name, [primary]))
+        assert lti_users.is_member('daemon', 'adm')
+        assert not lti_users.is_member('bin', 'adm')
     assert not lti_users.is_member('bin', 'daemon')
     assert not lti_users.is_member('daemon', 'no-such-group')
     assert not lti_users.is_member('no-such-user', 'daemon')

@@ -88,11 +88,18 @@ def test_a_hostile_setup_py_earns_no_points_and_adds_no_files_to_the_submission(
 ):
     monkeypatch.setattr(budget, 'BUILD_TIMEOUT_SEC', 30.0)
     folder = make_package(tmp_path, **{'setup.py': f'import os, time\n{code}\n'})
+    handed_in = contents_of(folder)
     verdicts = graded(folder)
     assert {outcome for outcome, _ in verdicts.values()} <= {'failed', 'ungraded'}, verdicts
+    assert contents_of(folder) == handed_in
     assert {path.name for path in folder.iterdir()} == {
         *('package.xml', 'setup.py', 'setup.cfg', 'resource', 'greeter'),
     }
+
+
+def contents_of(folder):
+    """The bytes of each file in a folder, by its path."""
+    return {path: path.read_bytes() for path in folder.rglob('*') if path.is_file()}
 
 
 @pytest.mark.slow

@@ -131,6 +131,8 @@ def test_each_program_in_the_table_of_results_is_defined_in_a_quiz():
         if isinstance(node, ast.FunctionDef)
     }
     assert set(RETURNED) <= defined
+    asked = [GUESS.search(source) for name in ALL for source in sources(name)]
+    assert {each[1] for each in asked if each} == set(RETURNED)
 
 
 @each_quiz

@@ -140,8 +140,12 @@ def test_an_announcement_of_entities_is_parsed():
 
 @given(message=st.binary(max_size=80) | st.integers(0, 80).map(lambda n: b''.join(SAID)[:n]))
 def test_an_arbitrary_announcement_is_parsed_or_refused_with_a_value_error(message):
-    with contextlib.suppress(ValueError):
-        entities.parse(message)
+    try:
+        gid, said = entities.parse(message)
+    except ValueError:
+        return
+    assert len(gid) == len(GID)
+    assert isinstance(said, entities.Entities)
 
 
 @pytest.mark.parametrize('length', [0, 3, 19, 23, 40, len(b''.join(SAID)) - 1])

@@ -21,18 +21,9 @@ Texts = dict[str, list[str]]
 """The places of each English text of a part, in reading order."""
 
 IN_WORDS: tuple[str, ...] = ('action_types', 'background', 'camera', 'commands', 'copies')
-IN_WORDS += ('course_nodes', 'definition_view', 'executables', 'install_faults')
-IN_WORDS += ('entry_points', 'exercise', 'package_build', 'package_faults', 'package_needs')
-IN_WORDS += (
-    'packages',
-    'node_file',
-    'panel',
-    'program',
-    'refusals',
-    'runner',
-    'sliders',
-    'spinning',
-)
+IN_WORDS += ('course_nodes', 'definition_view', 'entry_points', 'executables', 'exercise')
+IN_WORDS += ('install_faults', 'node_file', 'package_build', 'package_faults', 'package_needs')
+IN_WORDS += ('packages', 'panel', 'program', 'refusals', 'runner', 'sliders', 'spinning')
 IN_WORDS += ('unknown_robot', 'waiting', 'workspace')
 """The modules of `live` with sentences for users; the others only draw."""
 MODULES = {
