@@ -179,6 +179,13 @@ WRONG = {
     'bound the wrong way': (count('[<=60]', '[60<=]'), 'at most two [<=2]'),
     'Python': (count('bool success', 'success: bool'), 'the type comes first'),
     'semicolon': (count('bool success', 'bool success;'), 'no line ends with a semicolon'),
+    'a default behind =': (
+        turns('gear_ratios [', 'gear_ratios=['),
+        'the default value of a field is written without =',
+    ),
+    'const': (turns('uint8 MOTOR1', 'const uint8 MOTOR1'), 'leave out const'),
+    'Markdown': (turns('uint8 MOTOR1', '```msg\nuint8 MOTOR1'), 'a mark of Markdown'),
+    'a heading': (count('bool success', 'Response:\nbool success'), 'a heading begins with #'),
     'no name': (count('bool success', 'bool'), 'a line has a type and a name'),
     'indented line': (count('string message', '  string message'), 'no space before the type'),
     'keyword': (count('bool success', 'bool success\nstring from'), 'from is a word of Python'),

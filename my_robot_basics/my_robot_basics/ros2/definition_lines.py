@@ -132,8 +132,12 @@ def _why(type_name: str, rest: str, error: Exception) -> str:
 
 
 def _about_form(type_name: str, rest: str) -> str:
+    if type_name.startswith(('```', '~~~')):
+        return 'this is a mark of Markdown, and no line of the file: leave it out'
     if not rest:
-        return 'a line has a type and a name, like: float64 speed'
+        return 'a line has a type and a name, like: float64 speed; a heading begins with #'
+    if type_name == 'const':
+        return 'leave out const: a line begins with its type, and = alone makes a constant'
     if type_name.endswith(':') or rest.startswith(':'):
         return 'the type comes first, then the name, without a colon: float64 speed'
     if type_name.endswith(';') or rest.endswith(';'):
@@ -144,7 +148,8 @@ def _about_form(type_name: str, rest: str) -> str:
     is_type = second in _primitives() or _MESSAGE_TYPE.fullmatch(second)
     if is_type and first not in [*_primitives(), *_OTHER_NAMES] and _FIELD_NAME.fullmatch(first):
         return 'the type comes first, then the name: float64 speed'
-    if '[' in rest.partition(' ')[0] and type_name not in _OTHER_NAMES:
+    # the brackets behind = are those of a value
+    if '[' in re.split('[ =]', rest)[0] and type_name not in _OTHER_NAMES:
         return 'brackets belong to the type: float64[2] name'
     return ''
 
