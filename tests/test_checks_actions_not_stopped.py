@@ -91,6 +91,12 @@ class TellsTheGoalWhenCancelled(MoveArmServer):
         return MoveArm.Result(position=self.target)
 
 
+class EndsInTheCancelCallback(MoveArmServer):
+    def cancel(self, handle):
+        handle.canceled()
+        return super().cancel(handle)
+
+
 class FlagStays(MoveArmServer):
     """A flag of its own, which is never reset: the arm never moves again."""
 
@@ -165,6 +171,11 @@ WRONG = [
     (SleepsOnItsClock, 'cancels', "at the end of the move: the execute callback keeps the node's"),
     (GoesBackWhenCancelled, 'cancels', 'a move begins where the arm was stopped: remember its po'),
     (TellsTheGoalWhenCancelled, 'cancels', 'put in where the arm is, not where it was to go'),
+    (
+        EndsInTheCancelCallback,
+        'cancels',
+        r'with event CANCELED.*, so call canceled\(\) in the execute callback, after',
+    ),
     (FlagStays, 'cancels rejects', 'a request to cancel is for one goal: forget it when the'),
     (
         DegreesInTheLimits,

@@ -1,5 +1,7 @@
 """For an action server whose arm gets nowhere, each check says why."""
 
+import asyncio
+
 import pytest
 from arm_checks import CHECKS, reaches
 from my_robot_basics.checks import CheckFailed, action
@@ -33,6 +35,11 @@ class RaisesInExecute(MoveArmServer):
         raise KeyError('joint3')
 
 
+class SleepsWithAsyncio(MoveArmServer):
+    async def execute(self, handle):
+        await asyncio.sleep(0.05)
+
+
 class NeverExecutes(MoveArmServer):
     def make_server(self, **callbacks):
         return super().make_server(handle_accepted_callback=lambda handle: None, **callbacks)
@@ -56,7 +63,11 @@ NOWHERE = [
     ),
     (FlagStuck, 'see that the node knows that the arm moves no longer'),
     (ReturnsNothing, r'end the execute callback with `return MoveArm.Result\(position=…\)`'),
-    (RaisesInExecute, 'the execute callback raised an exception .*joint3.*; fix that first'),
+    (
+        RaisesInExecute,
+        'the execute callback raised an exception .*joint3.*; fix that first: the callback ended',
+    ),
+    (SleepsWithAsyncio, 'no running event loop.*, so wait without asyncio, .*; fix that first: t'),
     (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),
     (WaitsForItsOwnTimer, "the execute callback keeps the node's only thread: wait with"),
     (NeverEnds, 'end the loop of the execute callback when the arm is there'),

@@ -1,5 +1,6 @@
 """What the course adds to exceptions whose own text does not help beginners."""
 
+import asyncio
 import inspect
 import math
 import random
@@ -57,7 +58,15 @@ class AskerNode(Asker):
 
 
 NAMES = {
-    **{'time': time, 'random': random, 'math': math, 'inspect': inspect, 'np': np, 'rclpy': rclpy},
+    **{
+        'asyncio': asyncio,
+        'time': time,
+        'random': random,
+        'math': math,
+        'inspect': inspect,
+        'np': np,
+        'rclpy': rclpy,
+    },
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
     **{'AskerNode': AskerNode, 'Node': Node},
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
@@ -127,6 +136,7 @@ def error_of(code, **names):
             'Node.__new__(Node).set_parameters_callback',
             ', so write add_on_set_parameters_callback, its name since',
         ),
+        ('asyncio.get_running_loop()', ', so wait without asyncio, whose event loop does not run'),
         ('SolveIK.Request().x', ', so look its fields up with ros2 interface show'),
         ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
         ('FloatingPointRange()[0]', ', so put the range into a list, and that into a descriptor:'),

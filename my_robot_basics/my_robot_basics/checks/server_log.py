@@ -6,9 +6,9 @@ from typing import Any
 from rcl_interfaces.msg import Log
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from my_robot_basics.checks.callbacks import fix_first
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.feedback.python_errors import what_to_do
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
@@ -42,8 +42,12 @@ class ServerLog:
         said = self._find(_RAISED, since_ns)
         if not said:
             return ''
-        why = hidden.theirs(shorten(said.removeprefix(_RAISED), 100))
-        return fix_first(f'the execute callback raised an exception ({why})')
+        said = said.removeprefix(_RAISED)
+        why = hidden.theirs(shorten(said, 100))
+        raised = f'the execute callback raised an exception ({why})'
+        raised += what_to_do(said)
+        # rclpy catches what this callback raises: its spin goes on, as it does for no other
+        return f'{raised}; fix that first: the callback ended there'
 
     def was_not_set(self, *, since_ns: int) -> bool:
         """Whether the execute callback ended without succeed(), abort() or canceled()."""

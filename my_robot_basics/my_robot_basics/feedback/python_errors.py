@@ -3,10 +3,13 @@
 import re
 import unicodedata
 
+from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.error_words import BY_WORDS
 from my_robot_basics.feedback.moved_names import MOVED
 
-_BY_WORDS = tuple((re.compile(words), clause) for words, clause in (*BY_WORDS, *MOVED))
+_BY_WORDS = tuple(
+    (re.compile(words), clause) for words, clause in (*BY_WORDS, *MOVED, *OF_ACTIONS)
+)
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
     r"than [^:]*:\s+'(?P<name>.*?)'(?P<caret>\s+\^)"
