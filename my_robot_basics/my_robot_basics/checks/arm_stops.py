@@ -95,9 +95,10 @@ def expect_begins_at(arm: WatchedArm, stopped: Pose, moved: SentGoal, *, former:
             'nothing move it after canceled()'
         )
         if is_near(after[0], moved.goal.position):
+            # this goal is where the arm came from: it went back there, or is there at once now
             hint = (
-                'it is there at once: a move begins where the arm was stopped, and takes its time '
-                'from there, whichever way it goes'
+                'a move begins where the arm was stopped: remember its position in each step, let '
+                'nothing move it after canceled(), and let a move back take its time, too'
             )
         fail(
             expected=f'the next move to begin at {[round(each, 3) for each in stopped]}',
