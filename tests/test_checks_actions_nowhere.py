@@ -5,7 +5,10 @@ import asyncio
 import pytest
 from arm_checks import CHECKS, reaches
 from my_robot_basics.checks import CheckFailed, action
+from my_robot_basics.live import wait_until
 from nodes.running import imported
+from rclpy.action import ActionClient
+from rclpy.node import Node
 
 from arm_interfaces.action import MoveArm
 
@@ -77,6 +80,27 @@ NOWHERE = [
 @pytest.mark.parametrize(('node_class', 'message'), NOWHERE)
 def test_an_arm_that_gets_nowhere_fails_with_the_cause(run, node_class, message):
     run(node_class)
+    with pytest.raises(CheckFailed, match=message):
+        reaches(action('/move_arm', MoveArm))
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'message'),
+    [
+        (RaisesInExecute, 'the execute callback raised an exception .*joint3'),
+        (FlagStuck, 'see that the node knows that the arm moves no longer'),
+    ],
+)
+def test_a_goal_of_another_client_before_the_check_is_known(run, node_class, message):
+    run(node_class)
+    user = run(Node, 'user')
+    client = ActionClient(user, MoveArm, '/move_arm')
+    assert client.wait_for_server(timeout_sec=20.0)
+    sent = client.send_goal_async(MoveArm.Goal(position=[0.1, 0.1], speed=1.0))
+    wait_until(sent.done, timeout_sec=20.0)
+    ended = sent.result().get_result_async()
+    wait_until(ended.done, timeout_sec=20.0)
+    client.destroy()
     with pytest.raises(CheckFailed, match=message):
         reaches(action('/move_arm', MoveArm))
 

@@ -45,7 +45,8 @@ def _why_rejected(
 ) -> str:
     if server.log.had_no_response(since_ns=sent.sent_ns):
         return 'end the goal callback with `return GoalResponse.ACCEPT` or `GoalResponse.REJECT`'
-    if before.accepted_ns and (raised := server.log.raised(since_ns=before.accepted_ns)):
+    accepted_ns = before.accepted_ns or _first_accepted_ns(server)
+    if accepted_ns and (raised := server.log.raised(since_ns=accepted_ns)):
         return raised
     if former is None and server.ends.has_active():
         return (
@@ -61,9 +62,22 @@ def _why_rejected(
             'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > '
             '0, and let a goal that you reject change nothing in the node'
         )
-    if before.accepted_ns:
+    if accepted_ns:
         return (
             'the goal before it was accepted, and has ended: see that the node knows that the arm '
             'moves no longer, and that both positions are compared with their own limits, in rad'
         )
     return 'return GoalResponse.ACCEPT for two angles within the limits (in rad) and a speed > 0'
+
+
+def _first_accepted_ns(server: OpenAction) -> int:
+    """When the server accepted the oldest goal that it reports, whoever sent it; 0 if none.
+
+    In ns of its node's clock.
+    """
+    stamps = [
+        each.goal_info.stamp
+        for message in server.ends.statuses.messages()
+        for each in message.status_list
+    ]
+    return min((stamp.sec * 10**9 + stamp.nanosec for stamp in stamps), default=0)
