@@ -1,6 +1,7 @@
 """The report of Validate: its summary, its lines, and when it comes."""
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 from answered import answered
@@ -66,6 +67,16 @@ def test_a_summary_promises_no_more_than_is_known(checks, summary, passed):
     assert (told.summary, told.passed) == (summary, passed)
     assert as_text(told).endswith(summary)
     assert told.as_data()['summary'] == summary
+
+
+def test_a_summary_in_chinese_translates_each_of_its_sentences():
+    told = report(
+        check('failed'), check('not checked', 1.0), check('passed', hidden=True), check('by hand')
+    )
+    assert replace(told, language='zh_CN').summary == (
+        '3 项看得见的检查中有 1 项未通过：少了 2 分。3 项中有 1 项无法检查。'
+        '7 分中有 2 分在评分时确定。你写的内容由人工评分，占 2 分。'
+    )
 
 
 LINES = {

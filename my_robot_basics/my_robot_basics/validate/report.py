@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
+from functools import reduce
 from typing import Literal
 
 from my_robot_basics.language.catalogues import ENGLISH
-from my_robot_basics.language.speaking import in_language
+from my_robot_basics.language.sentences import SENTENCES
+from my_robot_basics.language.speaking import in_language, put
 from my_robot_basics.validate.report_words import words_around
 
 Outcome = Literal['passed', 'partial', 'failed', 'at grading', 'by hand', 'not checked']
@@ -92,7 +94,7 @@ class Report:
     @property
     def summary(self) -> str:
         """Return the overall result in one line."""
-        said = [self._visible()]
+        said = self._visible()
         total = _number(sum(check.points for check in self.checks))
         waiting = [check for check in self.checks if _waits(check)]
         at_grading = sum(check.earned or check.points for check in waiting)
@@ -103,21 +105,25 @@ class Report:
         by_hand = sum(check.points for check in self.checks if check.outcome == 'by hand')
         if by_hand:
             said.append(f'A person gives {_points(by_hand)} for what you have written.')
-        return in_language(self.language, ' '.join(said))
+        translated = [in_language(self.language, sentence) for sentence in said]
+        return reduce(self._joined, translated)
 
     def as_data(self) -> dict:
         """Return all of it as JSON data."""
         told = {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
         return {**asdict(self), **told, 'words': words_around(self.language)}
 
-    def _visible(self) -> str:
+    def _joined(self, one: str, other: str) -> str:
+        return put(self.language, SENTENCES, sentence=one, other=other)
+
+    def _visible(self) -> list[str]:
         visible = [c for c in self.checks if c.outcome not in ('at grading', 'by hand')]
         failed = [check for check in visible if check.outcome in ('failed', 'partial')]
         unknown = [check for check in visible if check.outcome == 'not checked']
         if not visible:
-            return 'Nothing here can be checked before grading.'
+            return ['Nothing here can be checked before grading.']
         if not failed and not unknown:
-            return 'All visible checks pass.'
+            return ['All visible checks pass.']
         said = []
         if failed:
             lost = _points(sum(check.points - check.earned for check in failed))
@@ -129,7 +135,7 @@ class Report:
                 )
         if unknown:
             said.append(f'{len(unknown)} of {len(visible)} could not be checked.')
-        return ' '.join(said)
+        return said
 
 
 def _waits(check: CheckFeedback) -> bool:
