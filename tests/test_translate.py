@@ -178,6 +178,14 @@ def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
     assert 'out of date: title: You double numbers. There are three ways.' in said
 
 
+def test_a_part_that_is_not_begun_is_named_with_its_file(course):
+    catalogue_path(course.root / 'locale', 'zh_CN', TOY).unlink()
+    assert [*lines([of_the_toy(update(course))])] == [
+        f'zh_CN  {TOY}: 0 of 4',
+        f'    not begun: locale/zh_CN/LC_MESSAGES/{TOY}.po has all texts',
+    ]
+
+
 def test_the_former_english_text_is_removed_with_the_mark_fuzzy(course):
     write_opening(course, OPENING.replace('two ways', 'three ways'))
     update(course)

@@ -108,8 +108,10 @@ def lines(reports: list[PartReport], *, most: int = 10) -> Iterator[str]:
     for report in reports:
         done = report.texts - len(report.missing) - len(report.outdated)
         yield f'{report.language}  {report.part}: {done} of {report.texts}'
-        if done == 0:
-            continue  # not begun yet: do not list every text
+        if done == 0:  # not begun yet: do not list every text
+            folder = f'locale/{report.language}/{MESSAGES}'
+            yield f'    not begun: {folder}/{report.part}.po has all texts'
+            continue
         for word, left in (('out of date', report.outdated), ('missing', report.missing)):
             for place, text in left[:most]:
                 yield f'    {word}: {place}: {" ".join(text.split()):.60}'
