@@ -2,14 +2,19 @@
 
 import asyncio
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from answered import answered
 from my_robot_basics.validate import run
 from my_robot_basics.validate.as_text import as_text
+from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.check_feedback import make_check
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
+from my_robot_basics.validate.verdict import Verdict
+from nbformat.v4 import new_code_cell
 
 
 def check(outcome, points=2.0, *, earned=None, hidden=False):
@@ -149,3 +154,15 @@ def test_the_report_comes_before_the_kernels_have_ended(monkeypatch, tmp_path):
     path = answered('02_joint_state', tmp_path)
     asyncio.run(run.validate(path, None, tell=lambda told: happened.append('told')))
     assert happened == ['told', 'ended']
+
+
+def test_the_author_of_a_hidden_part_reads_all_of_its_failure():
+    cell = new_code_cell('"""It closes"""', metadata={KEY: {'role': 'grade'}})
+    cell.metadata.nbgrader = {'grade_id': 'closes', 'points': 2}
+    lesson = SimpleNamespace(hidden={}, altered=())
+    short = 'in the part checked at grading: look at response.message'
+    full = "expected 'open', saw 'closed': look at response.message"
+    verdict = Verdict('closes', 'failed', 2.0, short, details=full, failed_at_grading=True)
+    told = make_check(lesson, cell, verdict, [])
+    assert told.message == f'in the part checked at grading: {full}'
+    assert make_check(lesson, cell, replace(verdict, details=''), []).message == short

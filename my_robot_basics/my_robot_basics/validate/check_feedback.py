@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from nbformat import NotebookNode
 
+from my_robot_basics.feedback.hidden import PLACE
 from my_robot_basics.validate.cells import KEY, graded_id
 from my_robot_basics.validate.lesson import Lesson
 from my_robot_basics.validate.report import CheckFeedback, Outcome
@@ -40,6 +41,9 @@ def troubles_of(verdicts: Iterable[Verdict]) -> tuple[str, ...]:
 
 
 def _message(verdict: Verdict) -> str:
+    if verdict.failed_at_grading and verdict.details:
+        # only the author's notebook has a hidden part to run, and says its inputs itself
+        return f'{PLACE}{verdict.details}'
     if not verdict.reason.startswith(UNGRADED):
         return verdict.reason
     why = verdict.reason.removeprefix(UNGRADED)
