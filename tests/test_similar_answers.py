@@ -107,10 +107,9 @@ def test_few_of_many_answers_written_to_differ_are_called_alike():
 
 
 def test_html_in_the_text_of_an_answer_is_escaped():
-    evil = ADA.replace("'base_link'", "'</pre><script>'") + '# \u202e\n'
+    evil = ADA.replace("'base_link'", "'</pre><script>'")
     (pair,) = find_pairs({'ada': evil, 'bob': evil}, SKELETON, 10)
     assert '<script>' not in pair['texts'][0]
-    assert '\u202e' not in pair['texts'][0]
     assert set(re.findall('<[^>]*>', pair['texts'][0])) == {'<mark>', '</mark>'}
 
 
@@ -140,12 +139,16 @@ def scores_in(course):
 
 
 def test_the_report_shows_similar_answers_side_by_side_and_scores_stay(course):
-    rows = [graded(course, 'ada', LONG), graded(course, '<b>bob', LONG.replace('total', 'sum_'))]
+    rows = [
+        graded(course, 'ada', LONG),
+        graded(course, '<b>bob', LONG.replace('total', 'sum_') + '# \u202e\n'),
+    ]
     scores = scores_in(course)
     page = write_report(course, Run(RUN.began), rows).read_text(encoding='utf-8')
     assert '100 % of <code>double</code>' in page
     assert '&lt;b&gt;bob and ada' in page
     assert page.count('<mark>') >= 2
+    assert '\u202e' not in page  # it would reverse the line that follows
     assert scores_in(course) == scores
     assert len(scores) == 2
 
