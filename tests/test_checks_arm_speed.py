@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 from my_robot_basics.checks import CheckFailed, arm_speed, moves
 from my_robot_basics.checks.arm_cancels import _went_on_without_answer
+from my_robot_basics.checks.robot_time import DrivenTime
 from my_robot_basics.checks.watched_arm import WatchedArm
 from my_robot_basics.feedback.errors import Starved
 
@@ -15,6 +16,7 @@ from arm_interfaces.action import MoveArm
 
 MINUTE = (1.2, -0.6)
 SPEED = 0.02
+IN_FINER_STEPS = arm_speed._is_right_in_finer_steps
 
 
 def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0, lost_sec=0.0):
@@ -117,6 +119,31 @@ def test_a_move_that_ends_too_soon_fails_even_if_right_in_finer_steps(monkeypatc
     monkeypatch.setattr(arm_speed, '_is_right_in_finer_steps', lambda *_: True)
     with pytest.raises(CheckFailed, match=r'expected 60\.0 s'):
         judge(58.0)
+
+
+@pytest.mark.parametrize(
+    ('slowest_rad_per_sec', 'times', 'is_right'),
+    [(0.0, 1.5, True), (0.15, 1.15, False), (10.0, 1.15, False), (0.15, 0.5, True)],
+    ids=['at no speed', 'at that speed', 'at every speed', 'stops a little before its goal'],
+)
+def test_finer_steps_show_whether_a_server_is_slow_at_that_speed_alone(
+    monkeypatch, slowest_rad_per_sec, times, is_right
+):
+    """One that rounds the speed down to whole degrees per second had all points."""
+    told = [(n, MoveArm.Feedback(position=[0.0, 0.0])) for n in range(600)]
+    sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=SPEED), feedback=lambda: told)
+    time = object.__new__(DrivenTime)
+    time.step_ns = 50_000_000
+    arm = SimpleNamespace(start=(0.0, 0.0), time=time, seconds=lambda sent: 60.0)
+
+    def slowness(arm, position, *, seconds):
+        return times if abs(position[0]) / seconds < slowest_rad_per_sec else 1.0
+
+    monkeypatch.setattr(arm_speed, 'bring', lambda *_: None)
+    monkeypatch.setattr(arm_speed, '_slowness', slowness)
+    monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: SimpleNamespace(rad_per_sec=SPEED))
+    assert IN_FINER_STEPS(arm, sent, MINUTE) == is_right
+    assert time.step_ns == 50_000_000
 
 
 @pytest.mark.parametrize('off', [-0.04, 0.04, 0.1])
