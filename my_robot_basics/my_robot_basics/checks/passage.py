@@ -4,13 +4,13 @@ import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
-from my_robot_basics.checks.enough import fewest_in_a_row
 from my_robot_basics.checks.invented import has_invented
 from my_robot_basics.checks.pairs import GAP_SEC, Pairs
-from my_robot_basics.checks.pushed_out import FLOOD, MOST_AGAIN, PushedOut
+from my_robot_basics.checks.pushed_out import MOST_AGAIN, PushedOut
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
 from my_robot_basics.checks.variety import Sent
+from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -18,7 +18,7 @@ ON_TIME_SEC = 1.0
 """How long a message may take, in s of free time: enough for a node that republishes by timer."""
 TIMEOUT_FACTOR, LEAST_SEC = 10.0, 0.2
 """Once one came out, the first timeout is TIMEOUT_FACTOR times the slowest so far, at least
-LEAST_SEC. After that `carry` asks whether a flood explains the delay; if not, ON_TIME_SEC more."""
+LEAST_SEC. Then it may take ON_TIME_SEC more, unless others' messages may have pushed it out."""
 QUIET_SEC = 0.1
 """How long to wait for a second copy of a message, in s of wall time."""
 MOST_SEC, LAST_SEC = 12.0, 20.0
@@ -67,30 +67,27 @@ class Passage:
     def carry(self, messages: Iterator[Sent]) -> RelayFaults:
         """Publish each message once the one before came out or is late, until enough in a row did.
 
-        A loss does not count if a flood of others' messages may have pushed it out of a queue.
+        A message that others' messages may have pushed out of a queue is sent again.
         """
-        late = in_a_row = 0
-        row = Stopwatch()
-        while in_a_row < fewest_in_a_row(row) and late < MOST_LATE:
+        late, in_a_row, row, pushed_out = 0, 0, Stopwatch(), self._pushed_out
+        while in_a_row < pushed_out.fewest_in_a_row(row) and late < MOST_LATE:
             # a node that swaps two messages has one in time, but never two in a row
-            if in_a_row > 1 and self._is_over(MOST_SEC):
+            if pushed_out.is_doubtful or (in_a_row > 1 and self._is_over(MOST_SEC)):
                 break
             others, sent, watch = len(self._others), next(messages), Stopwatch()
-            if self._send(sent):
-                in_a_row += 1
-            elif self._pushed_out.excuse(len(self._others) - others >= FLOOD):
-                self._waiting.remove(sent)
-            # wait for it: in a queue of depth 1, the next message would push it out
-            elif self._comes_out_later(sent, watch, others):
+            # wait for a late one: in a queue of depth 1, the next message would push it out
+            if self._send(sent) or self._comes_out_later(sent, watch, others):
                 in_a_row += 1
             else:
                 late, in_a_row, row = late + 1, 0, Stopwatch()
         self._watcher.spin_for(QUIET_SEC)
-        copies = self.copies()
-        is_enough = in_a_row >= fewest_in_a_row(row) or len(self._waiting) < FEWEST_LOST
-        if late < MOST_LATE and is_enough:
+        copies, lost = self.copies(), tuple(sent.kind for sent in self._waiting)
+        is_enough = in_a_row >= pushed_out.fewest_in_a_row(row)
+        if pushed_out.doubts(is_enough or late == MOST_LATE):
+            lost += tuple(pushed_out.kinds)
+            return RelayFaults(late=len(lost), lost=lost, doubt=Starved)
+        if late < MOST_LATE and (is_enough or len(lost) < FEWEST_LOST):
             return RelayFaults(copies=copies)
-        lost = tuple(sent.kind for sent in self._waiting)
         return RelayFaults(late=late, lost=lost, copies=copies)
 
     def copies(self) -> int:
@@ -98,7 +95,7 @@ class Passage:
         self._take()
         doubled = [number for number in self._copies if number > 1]
         # a message that counts as pushed out may still come, and looks like a copy of its equal
-        return min(doubled) if len(doubled) > bool(self._pushed_out.number) else 1
+        return min(doubled) if len(doubled) > bool(self._pushed_out.kinds) else 1
 
     def invents(self, sent: Sequence[tuple[Any, int]]) -> bool:
         """Whether messages came out that are not in `sent`: all messages and their send times."""
@@ -147,7 +144,7 @@ class Passage:
         """Wait for a message; send it again while messages of others may have pushed it out."""
 
         def is_overtaken() -> bool:
-            return self._pushed_out.may_be_by_few(len(self._others) - others, watch)
+            return self._pushed_out.may_be(len(self._others) - others, watch)
 
         for again in range(MOST_AGAIN + 1):
             if again:
@@ -156,8 +153,9 @@ class Passage:
             if self._wait_for(sent, free_sec=ON_TIME_SEC, unless=is_overtaken):
                 self._copies[-1] -= again
                 return True
-            if not self._pushed_out.excuse(is_overtaken()):
-                break
+            if not self._pushed_out.excuse(is_overtaken(), sent.kind):
+                return False
+        self._pushed_out.take_back(MOST_AGAIN + 1)  # lost each time: that is no coincidence
         return False
 
     def _wait_for(

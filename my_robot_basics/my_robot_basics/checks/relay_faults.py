@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from my_robot_basics.checks.variety import PLAIN
+from my_robot_basics.feedback.errors import CheckFailed
 
 CALLBACK = 'publish in every call of the callback'
 FEWEST_OF_A_KIND = 3
@@ -23,6 +24,8 @@ class RelayFaults:
     """The kind of each message that never came out."""
     copies: int = 1
     """How often a message came out if one came out repeatedly, otherwise 1."""
+    doubt: type[CheckFailed] = CheckFailed
+    """What to raise: Starved if messages of others on a busy machine may be the reason."""
 
     def is_whole(self) -> bool:
         """Whether enough messages came out in time, each exactly once."""

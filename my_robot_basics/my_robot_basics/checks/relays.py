@@ -15,7 +15,7 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_endpoints import TIMEOUT_SEC, RelayEndpoints
 from my_robot_basics.checks.relay_faults import RelayFaults, what_differs
 from my_robot_basics.checks.variety import filled, varied
-from my_robot_basics.feedback.errors import fail
+from my_robot_basics.feedback.errors import CheckFailed, fail
 from my_robot_basics.graph import familiar
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import free_turns
@@ -125,10 +125,9 @@ class Relay:
             earlier=earlier,
         )
         messages = varied(make_message)
-        carried = passage.carry(messages)
-        if not carried.is_whole():
+        if not (carried := passage.carry(messages)).is_whole():
             fault, hint = carried.fault()
-            self._fail(fault, raised.why(watcher) or hint)
+            self._fail(fault, raised.why(watcher) or hint, carried.doubt)
         seen = watcher.context, ('passes on after a pause', self), recorder.endpoint_gids()
         if not familiar.is_known(*seen) and passage.loses_after_a_pause(messages):
             self._fail(
@@ -151,12 +150,13 @@ class Relay:
             )
         raised.expect_none()
 
-    def _fail(self, seen: str, hint: str) -> NoReturn:
+    def _fail(self, seen: str, hint: str, doubt: type[CheckFailed] = CheckFailed) -> NoReturn:
         fail(
             expected=f'each message on {self.source} to be republished on {self.to} once, at once',
             seen=seen,
             hint=hint,
             cause=seen,
+            doubt=doubt,
         )
 
     def _expect_out(
