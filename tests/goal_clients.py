@@ -18,6 +18,7 @@ def check_outcomes():
     """Do what the grade cell `move_arm_client_outcomes` does."""
     numbers = random.Random(3)
     with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_ignores_obstacle(server)
         replies.expect_outcomes(
             server, succeeded=(1.2, -0.6), rejected=(1.8, 0.4), aborted=(-0.3, 0.9)
         )

@@ -83,6 +83,12 @@ class OtherSpeed(MoveArmClient):
         self.client.send_goal_async(goal).add_done_callback(self.answered)
 
 
+class CancelsNone(MoveArmClient):
+    def obstacle(self, message):
+        if message.data:
+            self.goal_handle.cancel_goal_async()
+
+
 class Raises(MoveArmClient):
     def ended(self, future):
         self.tell(WORDS[future.result().status_of_the_goal])
@@ -146,6 +152,7 @@ class WaitsForTheLost(MoveArmClient):
 IN_CALLBACK = 'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_asy'
 
 WRONG_OUTCOMES = [
+    (CancelsNone, "'NoneType' object has no attribute 'cancel_goal_async'.* in obstacle"),
     (
         AlwaysSucceeded,
         r"expected 'aborted' on .*saw 'succeeded': publish the outcome when the res",

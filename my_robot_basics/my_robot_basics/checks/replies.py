@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Sequence
+from functools import partial
 from typing import NoReturn
 
 from sensor_msgs.msg import JointState
@@ -10,6 +11,7 @@ from arm_interfaces.action import MoveArm
 from my_robot_basics.checks import joints
 from my_robot_basics.checks.absent_servers import publish_in_vain
 from my_robot_basics.checks.half_way import half_way
+from my_robot_basics.checks.outcome_words import why_another_word
 from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
 from my_robot_basics.checks.unasked_cancels import (
@@ -22,13 +24,9 @@ from my_robot_basics.checks.watched_arm import Pose
 SPEED = 0.5
 """The speed that the client must request, in rad/s."""
 EXACT = 1e-6
+SUBSCRIBES_SEC = 2.0
+"""How long to wait until the client's subscription to obstacles is known, in s of free time."""
 OUTCOMES: tuple[Ending, ...] = ('succeeded', 'aborted')
-_RESULT = 'publish the outcome when the result is there: future.result().status tells how it ended'
-_WORDS = {
-    'cancelled': 'write canceled with one l, as ROS does',
-    'succeed': 'write succeeded',
-    'success': 'write succeeded',
-}
 
 
 def choose(numbers: random.Random, count: int) -> list[tuple[float, float]]:
@@ -46,6 +44,20 @@ def choose_outcomes(numbers: random.Random) -> dict[str, tuple[float, float]]:
     words = ['succeeded', 'rejected', 'aborted']
     numbers.shuffle(words)
     return dict(zip(words, choose(numbers, len(words)), strict=True))
+
+
+def expect_ignores_obstacle(server: ServedAction) -> None:
+    """An obstacle while there is no goal changes nothing, for example raises no exception.
+
+    A client that does not subscribe to obstacles passes: another check asks for that. Raises
+    CheckFailed.
+    """
+    node, topic_name = server.watcher.node, server.cancelled_on
+    subscribes = partial(node.count_subscribers, topic_name)
+    if server.watcher.spin_until_free(lambda: subscribes() > 0, free_sec=SUBSCRIBES_SEC):
+        server.say_obstacle(is_there=True)
+        server.say_obstacle(is_there=False)
+        server.expect_no_outcome('there is no goal')
 
 
 def expect_outcomes(server: ServedAction, **positions: Pose) -> None:
@@ -158,21 +170,7 @@ def _expect_cancel_of(server: ServedAction, goal: ReceivedGoal) -> None:
 
 
 def _expect(server: ServedAction, word: str) -> None:
-    def why(seen: str) -> str:
-        if seen.lower() == word:
-            return 'write the word in lower case'
-        if seen.strip().lower() in _WORDS:
-            return _WORDS[seen.strip().lower()]
-        if seen.isdigit():
-            return 'publish the word for the status, not its number'
-        if word == 'rejected':
-            return (
-                'a goal that is not accepted has no result: look at goal_handle.accepted in the '
-                'callback of send_goal_async'
-            )
-        return _RESULT
-
-    server.expect_outcome(word, hint=why)
+    server.expect_outcome(word, hint=partial(why_another_word, word))
 
 
 def _pose(position: Pose) -> JointState:
