@@ -50,6 +50,26 @@ def test_run_answer_reports_a_node_that_the_answer_made_and_nothing_spins(lesson
     lesson.run('reset()')
 
 
+CHECK = '"""Two and two are four"""\nfrom my_robot_basics.checks import expect\n'
+
+
+@pytest.mark.parametrize('check', [CHECK, f"{CHECK}expect(False, expected=4, seen=5, hint='')"])
+def test_a_check_of_an_answer_that_was_changed_since_its_node_was_made_says_so(lesson, check):
+    answer, earlier = 'class Answer(Talker): pass', 'is from before Answer was changed: run the'
+    lesson.run("reset('Answer')")
+    lesson.run(answer)
+    lesson.run("run_answer('Answer', 'yes')")
+    assert earlier not in lesson.run(check).stdout
+    lesson.run(answer)
+    assert earlier in lesson.run(check).stdout
+    assert earlier not in lesson.run('print("no check")').stdout
+    lesson.run("run_answer('Answer', 'yes')")
+    assert earlier not in lesson.run(check).stdout
+    lesson.run(f'{answer}\nstop()')
+    assert earlier not in lesson.run(check).stdout
+    lesson.run('reset()')
+
+
 def test_why_not_running_says_what_ended_the_node_of_an_answer(lesson):
     lesson.run('from my_robot_basics.graph.not_running import why_not_running')
     lesson.run("reset('Answer')\nclass Answer(Talker): pass\nrun_answer('Answer', 'yes')")

@@ -22,9 +22,9 @@ Texts = dict[str, list[str]]
 
 IN_WORDS: tuple[str, ...] = ('action_types', 'background', 'camera', 'commands', 'copies')
 IN_WORDS += ('course_nodes', 'definition_view', 'entry_points', 'executables', 'exercise')
-IN_WORDS += ('install_faults', 'node_file', 'package_build', 'package_faults', 'package_needs')
-IN_WORDS += ('packages', 'panel', 'program', 'refusals', 'runner', 'sliders', 'spinning')
-IN_WORDS += ('unknown_robot', 'waiting', 'workspace')
+IN_WORDS += ('install_faults', 'node_file', 'outdated', 'package_build', 'package_faults')
+IN_WORDS += ('package_needs', 'packages', 'panel', 'program', 'refusals', 'runner', 'sliders')
+IN_WORDS += ('spinning', 'unknown_robot', 'waiting', 'workspace')
 """The modules of `live` with sentences for users; the others only draw."""
 MODULES = {
     'checks': [

@@ -39,6 +39,11 @@ def noted(keys: Iterable[str], how: tuple[str, str] = _STOPPED) -> list[str]:
     return ending
 
 
+def running_answer() -> str:
+    """Return the key of the answer's node while it runs, else ''."""
+    return '' if _answer.ended is not None else _answer.key
+
+
 def how_answer_ended() -> tuple[str, str, str]:
     """Return the key of the answer's node if it was ended, else '', and how it was ended."""
     return ('', *_STOPPED) if _answer.ended is None else (_answer.key, *_answer.ended)

@@ -6,7 +6,7 @@ from typing import Any
 import psutil
 from rclpy.node import Node
 
-from my_robot_basics.live import course_nodes, ended, runner, troubles
+from my_robot_basics.live import course_nodes, ended, outdated, runner, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
@@ -58,6 +58,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     if taken := course_nodes.taken_from(answer):
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
     ended.begin(answer.__name__)
+    outdated.watch()
     with course_nodes.none_made():
         node = runner.run(answer, *args, **kwargs)
     _refuse_programs()
