@@ -8,7 +8,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 sys.path.append(ROOT)
 
 if sys.argv[1:] == ['--is-set-up']:
-    from launcher.made import is_set_up  # every call runs this, so it imports nothing else
+    from launcher.venv_inputs import is_set_up  # every call runs this, so it imports nothing else
 
     sys.exit(not is_set_up(ROOT))
 

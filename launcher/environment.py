@@ -69,7 +69,7 @@ class Environment:
         """Whether this is the whole course: a bundle has no grader."""
         return (self.root / 'grader').is_dir()
 
-    def outside(self, variables: 'Mapping[str, str]') -> dict[str, str]:
+    def variables_for_installers(self, variables: 'Mapping[str, str]') -> dict[str, str]:
         """Return the caller's variables without those of other environments, for installers."""
         foreign = {f'{self.folder}/.venv', '/opt/ros'}
         for name in PREFIXES:
@@ -83,7 +83,7 @@ class Environment:
 
     def variables(self, variables: 'Mapping[str, str]') -> dict[str, str]:
         """Return the environment variables for a verb."""
-        inside, venv = self.outside(variables), f'{self.folder}/.venv'
+        inside, venv = self.variables_for_installers(variables), f'{self.folder}/.venv'
         inside |= {
             'VIRTUAL_ENV': venv,
             'PATH': os.pathsep.join(filter(None, [f'{venv}/bin', inside['PATH']])),

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.messages import LauncherError, clear_progress, say, show_progress
-from launcher.words import marked, put
+from launcher.words import gettext_noop, put
 
 STEPS = ('Resolved ', 'Collecting ', 'Downloading ', 'Prepared ', 'Installed ')
 """How lines of an installer begin that report progress."""
@@ -26,15 +26,15 @@ NO_NETWORK: tuple[str, ...] = (
 NO_NETWORK += ('Failed to establish a new connection', 'Temporary failure in name resolution')
 NO_NETWORK += ('Network is unreachable', 'Max retries exceeded', 'ConnectTimeout', 'ReadTimeout')
 NO_NETWORK += ('Read timed out', 'ProxyError')
-DISK_IS_FULL = marked(
+DISK_IS_FULL = gettext_noop(
     'the disk is full: free some space (.venv takes 0.9 GB and the downloads as much again), '
     'then start again.'
 )
-NETWORK_IS_AWAY = marked(
+NETWORK_IS_AWAY = gettext_noop(
     'the package registry cannot be reached: check the network and its proxy settings, then '
     'start again.'
 )
-FAILED = marked('setting up failed for the reason above: fix it, then start again.')
+FAILED = gettext_noop('setting up failed for the reason above: fix it, then start again.')
 SHOWN_LINES = 20
 """How many of an installer's last lines are shown if the cause is unknown."""
 
@@ -80,7 +80,7 @@ class Installer:
             version=version_of(python),
             installer=self.name,
         )
-        with writing():
+        with report_write_errors():
             if venv.is_dir():
                 shutil.rmtree(venv)
         if self.uses_uv:
@@ -124,7 +124,7 @@ class Installer:
         assert process.stdout is not None  # it is a pipe
         for line in process.stdout:
             said.append(line.rstrip('\n'))
-            if step := progress(said[-1]):
+            if step := step_of(said[-1]):
                 show_progress(step)
         failed = process.wait()
         clear_progress()
@@ -132,7 +132,7 @@ class Installer:
             raise LauncherError(reason_of(said))
 
 
-def progress(line: str) -> str:
+def step_of(line: str) -> str:
     """Return the step that a line of an installer reports, or ''."""
     if line.startswith('Installing collected packages'):
         return 'Installing'
@@ -149,7 +149,7 @@ def reason_of(lines: Iterable[str]) -> str:
 
 
 @contextmanager
-def writing() -> Iterator[None]:
+def report_write_errors() -> Iterator[None]:
     """Turn an OSError into a LauncherError."""
     try:
         yield

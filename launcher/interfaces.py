@@ -6,8 +6,8 @@ from pathlib import Path
 
 from launcher.environment import Environment
 from launcher.installer import version_of
-from launcher.made import FOREIGN_HEADERS, LINE, MODULE, WAITS
-from launcher.shares import point
+from launcher.shares import make_symlink
+from launcher.venv_inputs import FOREIGN_HEADERS, LINE, MODULE, WAITS
 
 EXPORTS = 'share/*/cmake/export_*__rosidl_generator_pyExport.cmake'
 """What CMake reads about the Python part of an interface package."""
@@ -31,16 +31,16 @@ def fix_waits(environment: Environment) -> None:
     """Let rclpy's EventsExecutor wait without a timeout: else it aborts the process then."""
     packages = packages_of(environment)
     file = packages / 'rclpy/experimental/events_executor.py'
-    point(packages / f'{WAITS}.py', environment.root / ENDLESS_WAITS)
+    make_symlink(packages / f'{WAITS}.py', environment.root / ENDLESS_WAITS)
     line = f'\nimport {WAITS}  # noqa\n'
     if file.exists() and line not in (text := file.read_text(encoding='utf-8')):
         replace(file, f'{text}{line}')
 
 
-def tell_python(environment: Environment) -> None:
+def install_startup_hook(environment: Environment) -> None:
     """Let each Python of .venv find packages of the workspace that its terminal has sourced."""
     packages = packages_of(environment)
-    point(packages / f'{MODULE}.py', environment.root / SOURCED)
+    make_symlink(packages / f'{MODULE}.py', environment.root / SOURCED)
     replace(packages / f'{MODULE}.pth', LINE)
 
 

@@ -46,7 +46,7 @@ def choose_language(
                     known=put(' or ').join(known),
                 )
     chosen = variables.get(VARIABLE, '')
-    return asked or (chosen if chosen in known else of_the_locale(lessons, variables)), kept
+    return asked or (chosen if chosen in known else language_of_locale(lessons, variables)), kept
 
 
 def languages(lessons: Path) -> list[str]:
@@ -54,7 +54,7 @@ def languages(lessons: Path) -> list[str]:
     return sorted(page.parent.name for page in lessons.glob(f'*/{INDEX}'))
 
 
-def of_the_locale(lessons: Path, variables: Mapping[str, str]) -> str:
+def language_of_locale(lessons: Path, variables: Mapping[str, str]) -> str:
     """Return the edition that fits the user's locale best: for zh_TW, it may be zh_CN."""
     known = [ENGLISH, *languages(lessons)]
     said = (variables.get(name) for name in ('LC_ALL', 'LC_MESSAGES', 'LANG'))
@@ -69,10 +69,10 @@ def replaced_locale(variables: Mapping[str, str]) -> dict[str, str]:
     bash warns of a missing locale in every cell with a `!`. `VARIABLE` still has the language.
     """
     asked = variables.get('LC_ALL', '')
-    return {'LC_ALL': PLAIN_LOCALE} if not _is_there(asked) and _is_there(PLAIN_LOCALE) else {}
+    return {'LC_ALL': PLAIN_LOCALE} if not _has_locale(asked) and _has_locale(PLAIN_LOCALE) else {}
 
 
-def _is_there(name: str) -> bool:
+def _has_locale(name: str) -> bool:
     before = locale.setlocale(locale.LC_ALL)
     try:
         locale.setlocale(locale.LC_ALL, name or before)

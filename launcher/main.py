@@ -38,10 +38,10 @@ def run_verb(environment: Environment, verb: Verb, arguments: list[str]) -> int:
     """Run a verb in its folder; return the exit status, unless this process is replaced by it."""
     variables = environment.variables(os.environ)
     if verb.owner == 'everyone':
-        from launcher.languages import VARIABLE, of_the_locale, replaced_locale
+        from launcher.languages import VARIABLE, language_of_locale, replaced_locale
 
         lessons = environment.root / 'notebooks'
-        variables.setdefault(VARIABLE, of_the_locale(lessons, variables))
+        variables.setdefault(VARIABLE, language_of_locale(lessons, variables))
         variables |= replaced_locale(variables)
     else:
         variables.pop('COURSE_LANGUAGE', None)  # set in a terminal; grading is always in English

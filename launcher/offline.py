@@ -38,7 +38,7 @@ class Wheels:
         return [pin for pin, digests in pins.items() if not digests & there]
 
 
-def asked_for(variables: Mapping[str, str]) -> Path | None:
+def offline_wheels(variables: Mapping[str, str]) -> Path | None:
     """Return the folder to install from without a network; None if the network may be used."""
     named = variables.get(VARIABLE, '')
     return Path(named).absolute() if named else None
@@ -95,12 +95,12 @@ def check_wheels(folder: Path, version: str, pins: Path) -> None:
             'the course, or not all of it was copied. Make it again with ./course wheels FOLDER, '
             'from the same version of the course.',
             folder=folder,
-            packages=in_words(lacks),
+            packages=summarize_pins(lacks),
             python=python,
         )
 
 
-def in_words(pins: Iterable[str]) -> str:
+def summarize_pins(pins: Iterable[str]) -> str:
     """Return the first of the packages, and how many more there are."""
     pins = list(pins)
     named = ', '.join(pins[:NAMED])

@@ -13,27 +13,27 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.installer import Installer, version_of, writing
-from launcher.interfaces import fix_exports, fix_waits, tell_python
-from launcher.made import (
+from launcher.installer import Installer, report_write_errors, version_of
+from launcher.interfaces import fix_exports, fix_waits, install_startup_hook
+from launcher.messages import LauncherError, say
+from launcher.offline import check_wheels, offline_wheels
+from launcher.shares import install_jupyter_files, make_tools, register_with_ament
+from launcher.venv_inputs import (
     ENVIRONMENT,
     PACKAGES,
     PINS,
+    environment_inputs,
     has_environment,
     interfaces_wheel,
     is_current,
-    made_environment,
-    made_packages,
+    packages_inputs,
 )
-from launcher.messages import LauncherError, say
-from launcher.offline import asked_for, check_wheels
-from launcher.shares import make_tools, tell_ament, tell_jupyter
 
 BUILD_TOOLS = ('setuptools',)
 """Packages that are needed to build those which exist only as sources."""
 
 
-def remember(environment: Environment, name: str, made: str) -> None:
+def record_inputs(environment: Environment, name: str, made: str) -> None:
     """Record what .venv was made from."""
     part = environment.venv / f'{name}.part'
     part.write_text(made, encoding='utf-8')
@@ -44,7 +44,7 @@ def set_up(environment: Environment, python: Path) -> None:
     """Make or update .venv as far as needed. Raises LauncherError if that fails."""
     asked = version_of(python) if os.environ.get('PYTHON') else ''
     root = str(environment.root)
-    if has_environment(root, asked) and is_current(root, PACKAGES, made_packages(root)):
+    if has_environment(root, asked) and is_current(root, PACKAGES, packages_inputs(root)):
         return
     if not os.access(environment.root, os.W_OK):
         raise LauncherError(
@@ -53,11 +53,13 @@ def set_up(environment: Environment, python: Path) -> None:
             root=environment.root,
         )
     with locked(environment.root) as lock:
-        wheels = asked_for(os.environ)
-        installer = Installer(environment, environment.outside(os.environ), lock, wheels)
+        wheels = offline_wheels(os.environ)
+        installer = Installer(
+            environment, environment.variables_for_installers(os.environ), lock, wheels
+        )
         if not has_environment(root, asked):
             make_environment(installer, python)
-        if not is_current(root, PACKAGES, made_packages(root)):
+        if not is_current(root, PACKAGES, packages_inputs(root)):
             install_packages(installer)
     say('.venv is ready')
 
@@ -72,13 +74,13 @@ def make_environment(installer: Installer, python: Path) -> None:
     installer.make_venv(python)
     # pip does not check hashes in its isolated build environments: install the build tools first
     pins = environment.venv / 'build_tools.txt'
-    with writing():
+    with report_write_errors():
         pins.write_text(build_tools(environment.root / PINS), encoding='utf-8')
     installer.install('-r', pins)
     installer.install('--no-deps', '--no-build-isolation', '-r', PINS)
-    with writing():
+    with report_write_errors():
         version = version_of(environment.python)
-        remember(environment, ENVIRONMENT, made_environment(str(environment.root), version))
+        record_inputs(environment, ENVIRONMENT, environment_inputs(str(environment.root), version))
 
 
 def build_tools(pins: Path) -> str:
@@ -95,14 +97,14 @@ def install_packages(installer: Installer) -> None:
     # reinstall always: a wheel of the same version may have changed
     options = ('--no-deps', '--no-build-isolation', '--force-reinstall')
     installer.install(*options, *ours, interfaces_wheel(root))
-    with writing():
-        tell_ament(environment)
-        tell_jupyter(environment)
+    with report_write_errors():
+        register_with_ament(environment)
+        install_jupyter_files(environment)
         make_tools(environment)
         fix_exports(environment)
         fix_waits(environment)
-        tell_python(environment)
-        remember(environment, PACKAGES, made_packages(root))
+        install_startup_hook(environment)
+        record_inputs(environment, PACKAGES, packages_inputs(root))
 
 
 @contextmanager

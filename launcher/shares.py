@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.made import KERNELS, TOOLS, UNDERLAY
+from launcher.venv_inputs import KERNELS, TOOLS, UNDERLAY
 
 TOOL = r"""#!/bin/sh
 # PYTHON_ARGCOMPLETE_OK
@@ -17,7 +17,7 @@ BUTTON = 'my_robot_basics/my_robot_basics/validate/labextension'
 KERNEL = 'share/jupyter/kernels/my_robot_basics_sandbox'
 
 
-def tell_ament(environment: Environment) -> None:
+def register_with_ament(environment: Environment) -> None:
     """Install what ROS looks for: the marker in the index, package.xml and executables."""
     venv, package = environment.venv, environment.root / 'my_robot_basics'
     index = venv / 'share/ament_index/resource_index/packages'
@@ -39,14 +39,14 @@ def executables_of(setup: str) -> list[str]:
     return re.findall(r"^ *'([a-z0-9_]*) = my_robot_basics\.", setup, re.MULTILINE)
 
 
-def tell_jupyter(environment: Environment) -> None:
+def install_jupyter_files(environment: Environment) -> None:
     """Install the Validate button, its server extension, and the configuration of kernels."""
     venv, button = environment.venv, environment.root / BUTTON
     extensions, server = venv / 'share/jupyter/labextensions', venv / 'etc/jupyter'
     server /= 'jupyter_server_config.d'
     for folder in (extensions, server):
         folder.mkdir(parents=True, exist_ok=True)
-    point(extensions / 'my_robot_basics_validate', button)
+    make_symlink(extensions / 'my_robot_basics_validate', button)
     shutil.copy(button / 'server.json', server / 'my_robot_basics.json')
     (venv / 'etc/ipython').mkdir(parents=True, exist_ok=True)
     (venv / 'etc/ipython/ipython_kernel_config.py').write_text(KERNELS, encoding='utf-8')
@@ -55,7 +55,7 @@ def tell_jupyter(environment: Environment) -> None:
         shutil.copy(environment.root / 'grader/kernels/kernelspec/kernel.json', venv / KERNEL)
 
 
-def point(link: Path, target: Path) -> None:
+def make_symlink(link: Path, target: Path) -> None:
     """Make a symbolic link; replace an existing one."""
     link.unlink(missing_ok=True)
     link.symlink_to(target)

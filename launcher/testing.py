@@ -61,7 +61,7 @@ class Checks:
         return subprocess.call(command, cwd=root, env=self.variables)
 
     @contextmanager
-    def beside(self, name: str, *command: str) -> Iterator[subprocess.Popen]:
+    def parallel(self, name: str, *command: str) -> Iterator[subprocess.Popen]:
         """Run a command in the background; at the end of the block, wait and print its output."""
         said = self.reports / f'{name}.txt'
         with said.open('wb') as written:
@@ -115,7 +115,7 @@ class Checks:
         failed = failed_lessons(self.environment.root) or ['solutions']
         return self.pytest('lessons-alone.xml', *NBVAL, *shard, '-v', '-n', '0', *failed)
 
-    def again(self, what: str, status: int, command: Callable[[], list[str]]) -> int:
+    def rerun(self, what: str, status: int, command: Callable[[], list[str]]) -> int:
         """Run failed tests again, one at a time; those that fail twice have failed.
 
         On a busy machine, tests can fail without a fault. Those that pass alone are recorded, with
@@ -163,24 +163,24 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         # not if single tests or the quick tier were asked for
         is_all = not named and '--quick' not in options
         has_lessons = is_all and any(environment.root.glob(LESSONS))
-        with ExitStack() as beside:
-            types = beside.enter_context(checks.beside('mypy', str(environment.venv / 'bin/mypy')))
+        with ExitStack() as jobs:
+            types = jobs.enter_context(checks.parallel('mypy', str(environment.venv / 'bin/mypy')))
             in_lessons = None
             if is_all:
                 checks.compile_tests()
             if has_lessons and has_own_network():
                 command = [*OWN_NETWORK, *checks.lessons(shard)]
-                in_lessons = beside.enter_context(checks.beside('lessons', *command))
+                in_lessons = jobs.enter_context(checks.parallel('lessons', *command))
             status = checks.call(*checks.tests(tests))
             if status == USAGE_ERROR:  # pytest has printed it, and nothing was tested
                 for other in filter(None, (types, in_lessons)):
                     other.terminate()
                 return status
         statuses.append(types.returncode)
-        statuses.append(checks.again('tests', status, lambda: checks.failed_tests(tests)))
+        statuses.append(checks.rerun('tests', status, lambda: checks.failed_tests(tests)))
         if has_lessons:
             status = in_lessons.returncode if in_lessons else checks.call(*checks.lessons(shard))
-            statuses.append(checks.again('lessons', status, lambda: checks.failed_lessons(shard)))
+            statuses.append(checks.rerun('lessons', status, lambda: checks.failed_lessons(shard)))
     return next((status for status in reversed(statuses) if status), 0)
 
 

@@ -10,21 +10,21 @@ import tempfile
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.installer import FULL, Installer, writing
-from launcher.made import PINS
+from launcher.installer import FULL, Installer, report_write_errors
 from launcher.messages import LauncherError, say
 from launcher.offline import (
     CONTENTS,
     PYTHONS,
     VARIABLE,
     Wheels,
-    in_words,
     read_pins,
     read_wheels,
     sha256_of,
+    summarize_pins,
     write_wheels,
 )
 from launcher.set_up import locked
+from launcher.venv_inputs import PINS
 
 PLATFORMS: tuple[str, ...] = ('manylinux1_x86_64', 'manylinux2010_x86_64', 'manylinux2014_x86_64')
 PLATFORMS += tuple(f'manylinux_2_{minor}_x86_64' for minor in range(5, 29))
@@ -48,7 +48,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
     asked = parser.parse_args(arguments)
     if variables.get(VARIABLE):
         raise LauncherError('./course wheels downloads packages: start it without --offline.')
-    with writing(), locked(environment.root) as lock:
+    with report_write_errors(), locked(environment.root) as lock:
         wheels = fill(environment, lock, asked.folder.absolute(), asked.python)
     size = sum((wheels.folder / name).stat().st_size for name in names_in(wheels))
     say(
@@ -67,8 +67,8 @@ def fill(environment: Environment, lock: int, folder: Path, versions: list[str])
 
     Raises LauncherError if the folder has other files, or if a file can't be downloaded.
     """
-    before = what_is_there(folder)
-    installer = Installer(environment, environment.outside(os.environ), lock)
+    before = read_earlier_download(folder)
+    installer = Installer(environment, environment.variables_for_installers(os.environ), lock)
     files: dict[str, dict[str, str]] = {}
     for version in versions:
         say(
@@ -83,7 +83,7 @@ def fill(environment: Environment, lock: int, folder: Path, versions: list[str])
     return wheels
 
 
-def what_is_there(folder: Path) -> Wheels:
+def read_earlier_download(folder: Path) -> Wheels:
     """Return what an earlier call put there; make the folder if there is none.
 
     Raises LauncherError if it can't be made, or has other files.
@@ -128,7 +128,7 @@ def download(installer: Installer, folder: Path, version: str) -> dict[str, str]
             raise LauncherError(
                 'pip brought no file of {packages} for Python {version}: start again, and report '
                 'it if that does not help.',
-                packages=in_words(lacks),
+                packages=summarize_pins(lacks),
                 version=version,
             )
         for name in found:

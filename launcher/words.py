@@ -18,7 +18,7 @@ def put(template: str, **values: object) -> str:
     return text.format(**values) if values else text
 
 
-def marked(sentence: str) -> str:
+def gettext_noop(sentence: str) -> str:
     """Mark a sentence for `./course translate`; it is translated later, where it is shown."""
     return sentence
 

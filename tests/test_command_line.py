@@ -71,7 +71,7 @@ def test_reading_arguments_imports_no_heavy_module(arguments):
 @pytest.mark.parametrize(
     'do',
     {
-        'the question whether all is set up': 'from launcher.made import is_set_up; '
+        'the question whether all is set up': 'from launcher.venv_inputs import is_set_up; '
         f'is_set_up({str(ROOT)!r})',
         'the way to a verb': 'from launcher.main import main; main(["--ready", "grade"])',
     }.values(),

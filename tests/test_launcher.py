@@ -13,7 +13,7 @@ import ros_wheels_bootstrapper
 from grader.cli.arguments import make_parser
 from grader.course import ROOT
 from launcher.environment import Environment, without_foreign
-from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, progress, reason_of
+from launcher.installer import DISK_IS_FULL, FAILED, NETWORK_IS_AWAY, reason_of, step_of
 from launcher.main import run_verb
 from launcher.set_up import BUILD_TOOLS, build_tools
 from launcher.shares import executables_of
@@ -124,7 +124,7 @@ def test_the_python_of_a_new_venv_looks_for_the_libraries_of_ros_itself(monkeypa
     ],
 )
 def test_the_steps_of_an_installer_are_shown(line, step):
-    assert progress(line) == step
+    assert step_of(line) == step
 
 
 def test_a_full_disk_is_the_reported_reason_even_with_network_errors():

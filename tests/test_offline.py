@@ -19,7 +19,7 @@ from launcher.environment import Environment
 from launcher.installer import NETWORK_IS_AWAY, Installer
 from launcher.messages import LauncherError
 from launcher.offline import CONTENTS, PYTHONS, check_wheels, read_pins
-from launcher.wheels import pythons, what_is_there
+from launcher.wheels import pythons, read_earlier_download
 
 PINS = """\
 # a comment
@@ -93,7 +93,7 @@ def test_a_folder_that_cannot_be_made_is_refused(above, tmp_path):
         folder = tmp_path / 'README.md'
         folder.write_text('kept')
     with pytest.raises(LauncherError) as refused:
-        what_is_there(folder)
+        read_earlier_download(folder)
     assert str(refused.value).startswith(f'{folder} cannot be made (')
     assert str(refused.value).endswith('): name another folder, a new or an empty one.')
 
@@ -108,7 +108,7 @@ def test_a_folder_that_course_wheels_did_not_finish_is_refused(content, tmp_path
 def test_a_folder_with_other_files_is_refused(tmp_path):
     (tmp_path / 'thesis.odt').touch()
     with pytest.raises(LauncherError, match='is not empty and was not made by'):
-        what_is_there(tmp_path)
+        read_earlier_download(tmp_path)
 
 
 def test_the_python_versions_are_those_of_the_pins():

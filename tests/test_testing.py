@@ -74,7 +74,7 @@ def test_more_than_two_unstable_tests_fail_a_run(number, why, status, tmp_path, 
         report(tmp_path / 'tests-alone.xml', **dict.fromkeys(names, ''))
         return ['true']
 
-    assert checks.again('tests', 1, pass_alone) == status
+    assert checks.rerun('tests', 1, pass_alone) == status
     record = tmp_path / 'unstable_tests.txt'
     assert record.exists() == bool(number)
     if number:
@@ -101,7 +101,7 @@ def test_a_file_that_cannot_be_imported_is_named_and_not_run_again(source, why, 
     command = [sys.executable, '-m', 'pytest', '-q', '-n', '1', written]
     status = subprocess.run(command, cwd=tmp_path, stdout=subprocess.DEVNULL).returncode
     alone = pytest.fail  # what cannot be imported is not run once more
-    assert checks.again('tests', status, alone) == 1
+    assert checks.rerun('tests', status, alone) == 1
     said = capsys.readouterr().err
     assert said.startswith('course: test_broken.py could not be imported, so none of its tests')
     assert f' were run: {why}' in said

@@ -68,7 +68,7 @@ PAGES = {'feedback': 'grader/report/page.html.j2', 'report': 'grader/report/repo
 _MARKED = re.compile(r"\b_\('((?:[^'\\]|\\.)*)'")
 """Matches a text to translate in a template."""
 LAUNCHER = 'launcher'
-_SAY = {'put', 'say', 'marked', 'LauncherError'}
+_SAY = {'put', 'say', 'gettext_noop', 'LauncherError'}
 """Functions of the launcher's modules whose first argument is a text to translate."""
 _PUT = re.compile(r'(?:\bput|fault =) "((?:[^"\\$]|\\.)+)"', re.DOTALL)
 """The same in `course`, where a backslash continues a line."""

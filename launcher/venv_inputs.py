@@ -37,12 +37,12 @@ ENVIRONMENT, PACKAGES = 'made_environment', 'made_packages'
 """Files in .venv that record what the packages, and our own packages, were made from."""
 
 
-def made_environment(root: str, version: str) -> str:
+def environment_inputs(root: str, version: str) -> str:
     """Return what .venv depends on; it includes the path, because a moved .venv does not work."""
     return f'{root}\n{version}\n{_text(root, PINS)}'
 
 
-def made_packages(root: str) -> str:
+def packages_inputs(root: str) -> str:
     """Return what the installation of our own packages in .venv depends on."""
     package = 'my_robot_basics'
     button = f'{package}/my_robot_basics/validate/labextension'
@@ -81,7 +81,7 @@ def is_current(root: str, name: str, made: str) -> bool:
 
 def is_set_up(root: str) -> bool:
     """Whether .venv is up to date."""
-    return has_environment(root) and is_current(root, PACKAGES, made_packages(root))
+    return has_environment(root) and is_current(root, PACKAGES, packages_inputs(root))
 
 
 def has_environment(root: str, version: str = '') -> bool:
@@ -90,7 +90,7 @@ def has_environment(root: str, version: str = '') -> bool:
     if not os.access(python, os.X_OK):
         return False
     its = _version(python)
-    current = is_current(root, ENVIRONMENT, made_environment(root, its))
+    current = is_current(root, ENVIRONMENT, environment_inputs(root, its))
     return current and version in ('', its)
 
 
