@@ -48,7 +48,7 @@ def profile() -> dict[str, object]:
     """Return the profile as Docker and Podman read it."""
     blocked = {name for names in BLOCKED.values() for name in names.split()}
     closer = {'personality', 'socket', *ENOSYS_INSTEAD}
-    allowed = sorted((known() - blocked - closer) | {*ADDED})
+    allowed = sorted((known_system_calls() - blocked - closer) | {*ADDED})
     rules: list[dict[str, object]] = [{'names': allowed, 'action': 'SCMP_ACT_ALLOW'}]
     for value in PERSONALITIES:
         rules.append(_where('personality', value, 'SCMP_CMP_EQ'))
@@ -63,7 +63,7 @@ def profile() -> dict[str, object]:
     }
 
 
-def known() -> set[str]:
+def known_system_calls() -> set[str]:
     """Return the names of all system calls of x86-64 that this libseccomp knows."""
     resolve = ctypes.CDLL('libseccomp.so.2').seccomp_syscall_resolve_num_arch
     resolve.restype, resolve.argtypes = ctypes.c_char_p, [ctypes.c_uint32, ctypes.c_int]

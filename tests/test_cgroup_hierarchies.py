@@ -9,7 +9,7 @@ import pytest
 from grader.autograde import preprocessors
 from grader.sandbox import cgroup_hierarchies as module
 from grader.sandbox import systemd_scopes
-from grader.sandbox.cgroup_hierarchies import GRADERS, NoCgroups, scoped
+from grader.sandbox.cgroup_hierarchies import GRADERS, NoCgroups, command_in_scope
 from grader.workers import dask_worker, workers
 
 OFF = 'cpu io memory pids'
@@ -203,21 +203,22 @@ def nowhere(machine, monkeypatch):
 
 def test_the_command_runs_in_a_delegated_systemd_user_scope(nowhere):
     nowhere.setattr(systemd_scopes.subprocess, 'run', answering(0))
-    command = scoped(('python', 'x'))
+    command = command_in_scope(('python', 'x'))
     assert command[:3] == ('systemd-run', '--user', '--scope')
     assert command[-3:] == ('--', 'python', 'x')
     assert '-pDelegate=yes' in command
-    assert len({scoped(('python', 'x')) for _ in range(3)}) == 3  # each has a unit of its own
+    # each has a unit of its own
+    assert len({command_in_scope(('python', 'x')) for _ in range(3)}) == 3
 
 
 def test_the_command_is_unchanged_if_systemd_refuses_a_scope(nowhere):
     nowhere.setattr(systemd_scopes.subprocess, 'run', answering(1))
-    assert scoped(('python', 'x')) == ('python', 'x')
+    assert command_in_scope(('python', 'x')) == ('python', 'x')
 
 
 def test_the_command_is_unchanged_if_cgroups_can_be_made(monkeypatch):
     monkeypatch.setattr(module, '_found', lambda proc: module.Hierarchies(1, {}))
-    assert scoped(('python', 'x')) == ('python', 'x')
+    assert command_in_scope(('python', 'x')) == ('python', 'x')
 
 
 @pytest.mark.parametrize(
@@ -245,7 +246,7 @@ def test_kinds_of_memory_that_linux_does_not_count_are_reported(
     ids=['nbgrader autograde', 'dask worker'],
 )
 def test_graders_start_their_workers_in_a_systemd_scope(monkeypatch, begin):
-    monkeypatch.setattr(workers, 'scoped', lambda command: ('a scope', *command))
+    monkeypatch.setattr(workers, 'command_in_scope', lambda command: ('a scope', *command))
     monkeypatch.setattr('atexit.register', lambda end: None)
     begun = begin()
     begun.__exit__()

@@ -16,10 +16,10 @@ from grader.kernels import fork_servers
 from grader.kernels.kernels import GradingKernel
 from grader.sandbox import cgroups as module
 from grader.sandbox.cgroup_hierarchies import NoCgroups, hierarchies
-from grader.sandbox.cgroups import MemoryEvents, joining, remove_cgroup
+from grader.sandbox.cgroups import MemoryEvents, join_command, remove_cgroup
 from grader.sandbox.limits import ROOM_MEMORY_BYTES, ROOM_PROCESSES
 from grader.sandbox.sandbox import Sandbox
-from grader.sandbox.temporary_folders import sweep
+from grader.sandbox.temporary_folders import remove_stale_folders
 
 pytestmark = pytest.mark.isolation
 
@@ -150,7 +150,7 @@ def test_closing_a_sandbox_kills_its_processes_and_removes_its_cgroups(loop):
     folders = sandbox._cgroups.folders
     assert all(folder.is_dir() for folder in folders)
     command = [
-        *joining(sandbox.cgroup('student')),
+        *join_command(sandbox.cgroup('student')),
         'sh',
         '-c',
         'sleep 4241 & echo; exec sleep 4241',
@@ -167,7 +167,7 @@ def test_closing_a_sandbox_kills_its_processes_and_removes_its_cgroups(loop):
 def test_a_command_that_cannot_join_its_cgroup_does_not_run(sandbox):
     cgroup = sandbox.cgroup('student')
     nowhere = {name: folder / 'nowhere' for name, folder in cgroup.folders.items()}
-    command = [*joining(dataclasses.replace(cgroup, folders=nowhere)), 'echo', 'it ran']
+    command = [*join_command(dataclasses.replace(cgroup, folders=nowhere)), 'echo', 'it ran']
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode != 0, done.stdout) == (True, '')
     assert 'nowhere' in done.stderr
@@ -205,11 +205,11 @@ def test_cgroups_of_a_killed_grader_are_removed_by_the_next_sweep(tmp_path):
             command, env=os.environ | {'TMPDIR': temporary}, stdout=subprocess.PIPE, text=True
         ) as grader:
             left = [Path(path) for path in grader.stdout.readline().strip().split('\0')]
-            assert sweep(Path(temporary)) == []
+            assert remove_stale_folders(Path(temporary)) == []
             assert all(path.is_dir() for path in left)  # its grader still runs
             grader.kill()
         assert all(path.is_dir() for path in left)
-        assert len(sweep(Path(temporary))) == 1
+        assert len(remove_stale_folders(Path(temporary))) == 1
         assert not any(path.exists() for path in left)
 
 

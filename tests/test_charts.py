@@ -2,7 +2,7 @@ import re
 
 import pytest
 
-from grader.report.charts import distribution, histogram, share
+from grader.report.charts import distribution, histogram, share_bar
 
 
 @pytest.mark.parametrize(
@@ -37,5 +37,5 @@ def test_a_chart_says_in_words_what_it_shows_and_escapes_its_title():
 
 
 def test_the_bar_of_a_share_has_the_width_of_its_value():
-    assert 'aria-label="a quarter"' in share(0.25, label='a quarter')
-    assert '<rect width="25" ' in share(0.25, label='a quarter')
+    assert 'aria-label="a quarter"' in share_bar(0.25, label='a quarter')
+    assert '<rect width="25" ' in share_bar(0.25, label='a quarter')

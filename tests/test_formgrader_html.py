@@ -54,5 +54,5 @@ def test_code_that_submissions_share_is_highlighted_only_once(monkeypatch):
     asked = []
     monkeypatch.setattr(formgrader, 'parse', lambda *args, limits: asked.append(args) or 'x')
     for _ in range(3):
-        formgrader.highlighted('this_is_asked_once = 1')
+        formgrader.highlight_code('this_is_asked_once = 1')
     assert len(asked) == 1

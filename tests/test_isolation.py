@@ -100,7 +100,7 @@ COUNTED = {
 
 @pytest.mark.parametrize(('tried', 'said'), COUNTED.values(), ids=COUNTED)
 def test_the_doctor_reports_whether_rooms_have_cgroups(course, monkeypatch, capsys, tried, said):
-    monkeypatch.setattr(module, 'scoped', lambda command: ('sh', '-c', tried))
+    monkeypatch.setattr(module, 'command_in_scope', lambda command: ('sh', '-c', tried))
     assert main(['doctor'], course=course) == 0
     told = capsys.readouterr().out
     assert said in told

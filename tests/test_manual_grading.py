@@ -19,7 +19,7 @@ from grader.grading import SubmissionOutcome
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
-from grader.report.progress_table import score_of, why
+from grader.report.progress_table import reason_in_a_line, score_of
 from grader.storage.gradebook import store
 from grader.storage.pipeline import prepare
 
@@ -115,7 +115,7 @@ def page(course, student):
 
 def test_a_written_answer_waits_for_points_in_row_table_and_page(course):
     row = grade(course, 'ada', BECAUSE)
-    assert (score_of(row), why(row)) == ('3/5 …', 'the rest is graded by hand')
+    assert (score_of(row), reason_in_a_line(row)) == ('3/5 …', 'the rest is graded by hand')
     assert exported(course, 'ada') == ('', 'to be graded by hand')
     assert '… waiting' in page(course, 'ada')
     assert 'Your instructor will read this.' in page(course, 'ada')
@@ -123,14 +123,16 @@ def test_a_written_answer_waits_for_points_in_row_table_and_page(course):
 
 def test_an_empty_answer_receives_zero_points_without_manual_grading(course):
     row = grade(course, 'bob', '')
-    assert (score_of(row), why(row)) == ('3/5', 'there is no answer')
+    assert (score_of(row), reason_in_a_line(row)) == ('3/5', 'there is no answer')
     assert exported(course, 'bob') == ('0.0', 'there is no answer')
     assert 'There is no answer' in page(course, 'bob')
 
 
 def test_the_reason_of_a_check_replaces_the_note_on_manual_grading(course):
     row = grade(course, 'ada', BECAUSE)
-    assert why(SubmissionOutcome('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
+    assert (
+        reason_in_a_line(SubmissionOutcome('ada', TOY, row.stored, 'expected 42')) == 'expected 42'
+    )
 
 
 @pytest.mark.slow
@@ -156,7 +158,7 @@ def test_points_given_in_the_formgrader_are_kept_by_a_regrade(course, formgrader
     assert exported(course, 'ada') == ('1.5', 'scored by hand; Twice of what?')
 
     again = grade(course, 'ada', BECAUSE)
-    assert (score_of(again), why(again)) == ('4.5/5', '')
+    assert (score_of(again), reason_in_a_line(again)) == ('4.5/5', '')
     assert exported(course, 'ada') == ('1.5', 'scored by hand; Twice of what?')
     html = page(course, 'ada')
     assert '✎ scored by hand' in html

@@ -1,6 +1,6 @@
 import pytest
 
-from grader.report.message_groups import CellMessage, grouped, numberless
+from grader.report.message_groups import CellMessage, group_messages, without_numbers
 
 
 @pytest.mark.parametrize(
@@ -12,7 +12,7 @@ from grader.report.message_groups import CellMessage, grouped, numberless
     ],
 )
 def test_reasons_are_grouped_by_their_words_without_the_numbers(reason, words):
-    assert numberless(reason) == (words or reason)
+    assert without_numbers(reason) == (words or reason)
 
 
 def test_messages_that_differ_only_in_numbers_are_one_reason_per_assignment():
@@ -24,7 +24,9 @@ def test_messages_that_differ_only_in_numbers_are_one_reason_per_assignment():
         CellMessage('\x1b', 'two', '', 'saw 1'),
         CellMessage('zoe', 'two', 'a', 'heard 1'),
     ]
-    found = [(r.assignment, r.words, r.example, r.students, r.checks) for r in grouped(said)]
+    found = [
+        (r.assignment, r.words, r.example, r.students, r.checks) for r in group_messages(said)
+    ]
     assert found == [
         ('one', 'saw …', 'saw 1', ('ada', 'bob'), ('a', 'b')),
         ('two', 'saw 1', 'saw 1', ('eve', '\\x1b'), ()),
@@ -46,7 +48,7 @@ def test_messages_that_differ_only_in_numbers_are_one_reason_per_assignment():
     ],
 )
 def test_a_number_that_all_messages_share_is_kept_in_the_reason(one, other, words):
-    [reason] = grouped(
+    [reason] = group_messages(
         [CellMessage('ada', 'one', 'a', one), CellMessage('bob', 'one', 'a', other)]
     )
     assert reason.words == words

@@ -102,7 +102,7 @@ def test_a_cancelled_question_ends_and_the_next_question_is_answered():
 def test_page_templates_of_all_languages_are_loaded_once():
     page._template.cache_clear()
     for _ in range(2):
-        assert parsing_process._function('grader.report.page:page') is page.page
+        assert parsing_process._function('grader.report.page:render_page') is page.render_page
     assert page._template.cache_info().misses == 1 + len(languages(LOCALE))
     page._template.cache_clear()
 

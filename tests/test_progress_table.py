@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grader.grading import SubmissionOutcome
 from grader.report import progress_table
-from grader.report.progress_table import print_rows, why
+from grader.report.progress_table import print_rows, reason_in_a_line
 from grader.storage.gradebook import StoredResult
 from grader.storage.submitted import SubmissionFolder
 
@@ -70,7 +70,7 @@ def test_output_that_is_not_a_terminal_contains_only_rows(monkeypatch, tmp_path,
 def test_a_row_shows_the_late_penalty_and_whether_the_score_is_unchanged():
     late = replace(SAID['bob'], former=2.0, late=0.3)
     row = SubmissionOutcome('bob', '00_toy', late, 'count again', reused=True)
-    assert why(row) == '(unchanged) (late: -0.3) count again'
-    assert why(replace(row, stored=replace(late, former=2.3))) == (
+    assert reason_in_a_line(row) == '(unchanged) (late: -0.3) count again'
+    assert reason_in_a_line(replace(row, stored=replace(late, former=2.3))) == (
         '(was 2.3) (late: -0.3) count again'
     )

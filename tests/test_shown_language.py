@@ -21,7 +21,7 @@ from my_robot_basics.validate.text import columns
 
 from grader.course import Course
 from grader.notebook.restore import restore
-from grader.report.page import page
+from grader.report.page import render_page
 
 
 def test_the_line_that_fixes_a_fault_follows_a_colon_of_the_language():
@@ -111,7 +111,7 @@ ABOUT = {'student': 'ada & bob', 'assignment': '03_publisher', 'score': 0.0, 'ma
 
 
 def test_the_feedback_page_is_in_the_language_of_the_notebook():
-    html = page(graded({'language': 'zh_CN'}), ABOUT)
+    html = render_page(graded({'language': 'zh_CN'}), ABOUT)
     assert '<html lang="zh-CN">' in html
     for said in (
         '<h1>3 · 一直在发布的节点</h1>',
@@ -130,7 +130,7 @@ def test_the_feedback_page_is_in_the_language_of_the_notebook():
 
 
 def test_an_english_notebook_has_an_english_page():
-    html = page(graded({}), ABOUT)
+    html = render_page(graded({}), ABOUT)
     assert '<html lang="en">' in html
     assert 'Feedback for ada &amp; bob' in html
     assert '<p class="total">0 of 2 points</p>' in html
@@ -185,7 +185,7 @@ def test_the_feedback_page_splits_a_reason_with_colons_into_its_parts():
         failed_at_grading=True,
     )
     notebook.cells[0].source = '"""name holds joint1 and joint2, in this order"""\ncheck()'
-    html = page(notebook, ABOUT)
+    html = render_page(notebook, ABOUT)
     assert '<dt>实际</dt><dd>[30.0]</dd>' in html
     assert '>这些是度：两个都用 radians() 换算</dd>' in html
     assert '评分时检查，超出“name 里依次是 joint1 和 joint2”的部分' in html

@@ -12,7 +12,7 @@ import pytest
 
 from grader.sandbox import temporary_folders
 from grader.sandbox.kernel_paths import make_folder
-from grader.sandbox.temporary_folders import PREFIX, own_folder, sweep
+from grader.sandbox.temporary_folders import PREFIX, own_folder, remove_stale_folders
 
 GRADER = """
 import sys
@@ -70,7 +70,7 @@ def test_a_process_has_one_folder_that_no_other_user_can_enter():
     other = make_folder('test')
     assert folder.parent == other.parent == own_folder()
     assert own_folder().stat().st_mode & 0o777 == 0o700
-    assert own_folder() not in sweep(own_folder().parent)
+    assert own_folder() not in remove_stale_folders(own_folder().parent)
     assert len(str(folder / 'kernel' / 'zmq-1')) < 107
     for each in (folder, other):
         assert not [path for path in each.rglob('*') if not path.is_dir()]
@@ -94,9 +94,9 @@ def test_sweeping_follows_no_links_and_removes_only_abandoned_folders(tmp_path, 
     (left / 'way_out').symlink_to(precious)
     before = sorted(tmp_path.iterdir())
     monkeypatch.setattr(os, 'geteuid', lambda: os.getuid() + 1)
-    assert sweep(tmp_path) == []  # another user's
+    assert remove_stale_folders(tmp_path) == []  # another user's
     monkeypatch.undo()
-    assert sweep(tmp_path) == [left]
+    assert remove_stale_folders(tmp_path) == [left]
     assert sorted(tmp_path.iterdir()) == [path for path in before if path != left]
     assert (precious / 'kept.txt').exists()
 

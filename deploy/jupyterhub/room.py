@@ -16,7 +16,7 @@ STOP_GRACE_SEC = 10.0
 """How long a server that was told to end may take to end its kernels."""
 
 
-async def pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def copy_stream(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
     """Copy data until one of the two sides is closed."""
     try:
         while chunk := await reader.read(CHUNK_BYTES):
@@ -36,14 +36,14 @@ async def relay(listening: socket.socket, port: int) -> asyncio.Server:
         except OSError:  # the server is not up yet, or gone: the hub tries again
             writer.close()
             return
-        await asyncio.gather(pass_on(reader, inside[1]), pass_on(inside[0], writer))
+        await asyncio.gather(copy_stream(reader, inside[1]), copy_stream(inside[0], writer))
         inside[1].close()
         writer.close()
 
     return await asyncio.start_server(join, sock=listening)
 
 
-def bury(server: subprocess.Popen[bytes]) -> int | None:
+def reap_processes(server: subprocess.Popen[bytes]) -> int | None:
     """Reap ended processes, orphans too; return the server's exit code when it has ended."""
     while True:
         try:
@@ -69,7 +69,7 @@ async def run(descriptor: int, port: int, command: list[str]) -> int:
     server = subprocess.Popen(command, start_new_session=True)
 
     def look() -> None:
-        code = bury(server)
+        code = reap_processes(server)
         if code is not None and not ended.done():
             ended.set_result(code)
 

@@ -17,7 +17,7 @@ from typing import IO
 
 from grader.sandbox.bubblewrap import ENVIRONMENT
 from grader.sandbox.font_cache import font_cache
-from grader.sandbox.kernel_paths import passed_on
+from grader.sandbox.kernel_paths import inherited_variables
 
 MAX_ANSWER = 4_000
 """Bytes that are read of a message from a server, or from a process that it forked."""
@@ -165,4 +165,4 @@ def _environment() -> dict[str, str]:
     the course again that nothing else imports.
     """
     own = {'MPLCONFIGDIR': font_cache(), 'PYTHONDONTWRITEBYTECODE': ''}
-    return passed_on() | ENVIRONMENT | own
+    return inherited_variables() | ENVIRONMENT | own

@@ -15,7 +15,7 @@ from grader.common.errors import CourseError
 from grader.common.pool import Pool
 from grader.kernels.fork_client import fork_into
 from grader.kernels.fork_servers import NoForkedKernel
-from grader.sandbox.cgroup_hierarchies import scoped
+from grader.sandbox.cgroup_hierarchies import command_in_scope
 from grader.sandbox.remedies import remedy
 from grader.sandbox.sandbox import Sandbox
 
@@ -114,7 +114,7 @@ def require_isolation(*, trust_students: bool = False) -> bool:
 
 def accounting() -> Protection:
     """Return whether each room gets a cgroup, tried as the processes that grade would."""
-    command = scoped((sys.executable, '-P', '-m', 'grader.sandbox.cgroup_hierarchies'))
+    command = command_in_scope((sys.executable, '-P', '-m', 'grader.sandbox.cgroup_hierarchies'))
     tried = subprocess.run(command, capture_output=True, text=True)
     if tried.returncode == 0:
         return Protection(f'a cgroup for each room ({tried.stdout.strip()})')

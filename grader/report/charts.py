@@ -62,7 +62,7 @@ def _label(bar: int, step: int, max_score: float) -> str:
     return f'{bar * step}–{end:g}' if step > 1 and end > bar * step else f'{bar * step}'
 
 
-def share(part: float, *, label: str) -> Markup:
+def share_bar(part: float, *, label: str) -> Markup:
     """Return a bar that is filled to `part`, from 0 to 1."""
     return Markup(
         '<svg role="img" viewBox="0 0 100 12" width="100" height="12" aria-label="{label}">'

@@ -39,10 +39,10 @@ class FeedbackPage(Exporter):
         self, nb: NotebookNode, resources: dict | None = None, **options: object
     ) -> tuple[str, dict]:
         """Return the feedback page of a graded notebook as HTML."""
-        nb, resources = self.gathered(nb, resources, **options)
+        nb, resources = self.gather_verdicts(nb, resources, **options)
         return _page(nb, resources['nbgrader']), resources
 
-    def gathered(
+    def gather_verdicts(
         self, nb: NotebookNode, resources: dict | None = None, **options: object
     ) -> tuple[NotebookNode, dict]:
         """Return the notebook with verdicts, and the resources that a page is made from."""
@@ -53,10 +53,10 @@ def _page(notebook: NotebookNode, about: dict) -> str:
     """Return the page, made in a process with limits. Raises ParsingFailed if that fails."""
     about = {key: about[key] for key in ABOUT if key in about}
     try:
-        return parse('grader.report.page:page', notebook, about, limits=LIMITS)
+        return parse('grader.report.page:render_page', notebook, about, limits=LIMITS)
     except ParsingFailed as why:
         said = f'Your text is shown as you typed it: {why} to show it as it is meant.'
-        return parse('grader.report.page:page', notebook, about, said, limits=LIMITS)
+        return parse('grader.report.page:render_page', notebook, about, said, limits=LIMITS)
 
 
 def write_feedback(
@@ -77,7 +77,7 @@ def write_feedback(
 
         def start(each: tuple[str, ...]) -> 'Future[str]':
             student, assignment, _ = each
-            return threads.submit(_page, *_gathered(course, student, assignment, exporter))
+            return threads.submit(_page, *_page_inputs(course, student, assignment, exporter))
 
         # other processes make pages while this one reads the next submissions from the database
         for (student, assignment, _), work in run_ahead(whose, start, at_most=2 * AT_ONCE):
@@ -126,15 +126,15 @@ def write_page(
     the page can't be made.
     """
     return _put(
-        course, student, assignment, _page(*_gathered(course, student, assignment, exporter))
+        course, student, assignment, _page(*_page_inputs(course, student, assignment, exporter))
     )
 
 
-def _gathered(
+def _page_inputs(
     course: Course, student: str, assignment: str, exporter: FeedbackPage
 ) -> tuple[NotebookNode, dict]:
     notebook = graded_notebook(course, student, assignment)
-    shown, at = exporter.gathered(notebook, resources_of(course, assignment, student))
+    shown, at = exporter.gather_verdicts(notebook, resources_of(course, assignment, student))
     return shown, at['nbgrader']
 
 

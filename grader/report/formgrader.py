@@ -20,8 +20,8 @@ LIMITS = Limits(cpu_sec=5)
 """For one cell or one output; an ordinary one takes some milliseconds of CPU time."""
 FILTERS = {
     'markdown2html': 'grader.report.formgrader.harmless_markdown',
-    'highlight_code': 'grader.report.formgrader.highlighted',
-    'clean_html': 'grader.report.formgrader.cleaned',
+    'highlight_code': 'grader.report.formgrader.highlight_code',
+    'clean_html': 'grader.report.formgrader.clean_html',
     'strip_files_prefix': 'grader.report.formgrader.without_files_prefix',
 }
 """They replace filters of nbconvert's HTMLExporter."""
@@ -42,51 +42,53 @@ def _allowed(tag: str, name: str, value: str) -> bool:
 def harmless_markdown(context: Context, text: str) -> Markup:
     """Turn markdown into HTML, keeping only harmless tags and pasted pictures: a Jinja filter."""
     attachments = context.get('cell', {}).get('attachments', {})
-    return Markup(_apart('grader.report.formgrader:markdown_apart', text, attachments))
+    return Markup(
+        _render_in_process('grader.report.formgrader:render_markdown', text, attachments)
+    )
 
 
-def highlighted(source: str, language: str | None = None, metadata: object = None) -> Markup:
+def highlight_code(source: str, language: str | None = None, metadata: object = None) -> Markup:
     """Highlight code: a Jinja filter that replaces nbconvert's Highlight2HTML."""
-    return Markup(_apart('grader.report.formgrader:code_apart', source))
+    return Markup(_render_in_process('grader.report.formgrader:render_code', source))
 
 
-def cleaned(html: str | bytes) -> Markup:
+def clean_html(html: str | bytes) -> Markup:
     """Keep only the harmless part of HTML: a Jinja filter that replaces nbconvert's clean_html."""
     text = html.decode(errors='replace') if isinstance(html, bytes) else str(html)
-    return Markup(_apart('nbconvert.filters:clean_html', text))
+    return Markup(_render_in_process('nbconvert.filters:clean_html', text))
 
 
 def without_files_prefix(html: str) -> Markup:
     """Do what nbconvert's strip_files_prefix does: a Jinja filter."""
     if 'files/' not in html:
         return Markup(html)
-    return Markup(_apart('nbconvert.filters:strip_files_prefix', str(html)))
+    return Markup(_render_in_process('nbconvert.filters:strip_files_prefix', str(html)))
 
 
-def markdown_apart(text: str, attachments: dict) -> str:
+def render_markdown(text: str, attachments: dict) -> str:
     """Return markdown as HTML with harmless tags only."""
     html = HTMLExporter().markdown2html({'cell': {'attachments': attachments}}, text)
     protocols = {'http', 'https', 'mailto', 'data'}
     return bleach.clean(html, tags=_TAGS, attributes=_allowed, protocols=protocols)
 
 
-def code_apart(source: str) -> str:
+def render_code(source: str) -> str:
     """Return highlighted Python code, as HTML."""
     return nbconvert_filters.Highlight2HTML()(source)
 
 
-def _apart(function: str, text: str, *more: object) -> str:
+def _render_in_process(function: str, text: str, *more: object) -> str:
     """Return HTML that is made in a process with limits; if that fails, the text itself."""
-    return _once(function, text) if not more else _limited(function, text, *more)
+    return _parse_cached(function, text) if not more else _parse_limited(function, text, *more)
 
 
 @lru_cache(maxsize=1_000)
-def _once(function: str, text: str) -> str:
+def _parse_cached(function: str, text: str) -> str:
     """Cache results: all submissions have many cells in common."""
-    return _limited(function, text)
+    return _parse_limited(function, text)
 
 
-def _limited(function: str, text: str, *more: object) -> str:
+def _parse_limited(function: str, text: str, *more: object) -> str:
     try:
         return parse(function, text, *more, limits=LIMITS)
     except ParsingFailed as why:

@@ -34,12 +34,12 @@ class Reason:
     checks: tuple[str, ...]
 
 
-def grouped(all_said: Iterable[CellMessage]) -> list[Reason]:
+def group_messages(all_said: Iterable[CellMessage]) -> list[Reason]:
     """Group messages by their words; the most common comes first. All text is made printable."""
     found = defaultdict(list)
     for said in all_said:
         text = printable(said.text)
-        found[printable(said.assignment), numberless(text)].append((said, text))
+        found[printable(said.assignment), without_numbers(text)].append((said, text))
     reasons = [
         Reason(
             assignment=assignment,
@@ -53,7 +53,7 @@ def grouped(all_said: Iterable[CellMessage]) -> list[Reason]:
     return sorted(reasons, key=lambda each: (-len(each.students), each.assignment, each.words))
 
 
-def numberless(reason: str) -> str:
+def without_numbers(reason: str) -> str:
     """Return a message with … in place of its numbers, and of lists of numbers."""
     return _MANY.sub('…', NUMBER.sub('…', reason))
 
@@ -62,6 +62,6 @@ def _common(reasons: list[str]) -> str:
     """Return the words of messages that differ only in numbers, with … for numbers that differ."""
     numbers = [[found[0] for found in NUMBER.finditer(reason)] for reason in reasons]
     if len(set(map(len, numbers))) > 1:  # they contain lists of numbers, of different lengths
-        return numberless(reasons[0])
+        return without_numbers(reasons[0])
     same = iter([len(set(each)) == 1 for each in zip(*numbers, strict=True)])
     return _MANY.sub('…', NUMBER.sub(lambda found: found[0] if next(same) else '…', reasons[0]))

@@ -30,7 +30,7 @@ _FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
 _ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
 
 
-def page(as_json: dict, about: dict, plain: str = '') -> str:
+def render_page(as_json: dict, about: dict, plain: str = '') -> str:
     """Return the page; `about` has nbgrader's student, assignment, score, max_score, late_penalty.
 
     Grade cells have only what students may see, and scores: see gather_verdicts.py. If `plain` is

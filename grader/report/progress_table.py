@@ -52,7 +52,7 @@ def print_rows(
                 printable(row.assignment),
                 *more,
                 score_of(row),
-                why(row),
+                reason_in_a_line(row),
             )
             tqdm.write(text)
             sys.stdout.flush()
@@ -96,7 +96,7 @@ def score_of(row: SubmissionOutcome) -> str:
     return f'{row.stored.score:g}/{row.stored.max_score:g}{waits}'
 
 
-def why(row: SubmissionOutcome) -> str:
+def reason_in_a_line(row: SubmissionOutcome) -> str:
     """Return the reason of a row as one line, with what has changed, or that nothing has."""
     stored, text = row.stored, printable(row.reason)
     if stored and stored.pending and not text:

@@ -19,7 +19,7 @@ from grader.course import Course
 from grader.export.totals import Totals, add_up
 from grader.grading import SubmissionOutcome
 from grader.kernels.isolation import require_isolation
-from grader.report.charts import distribution, share
+from grader.report.charts import distribution, share_bar
 from grader.report.message_groups import Reason
 from grader.report.progress_table import changes, score_of
 from grader.report.similar_answers import SimilarPair, find_similar
@@ -179,6 +179,6 @@ def _template(language: str) -> Template:
             '_': put,
             'language_code': language.replace('_', '-'),
             'distribution': partial(distribution, put=put),
-            'share': share,
+            'share': share_bar,
         },
     )

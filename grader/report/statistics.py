@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from grader.course import Course
 from grader.grading import SubmissionOutcome
 from grader.notebook.restore import KEY, grade_id
-from grader.report.message_groups import CellMessage, Reason, grouped
+from grader.report.message_groups import CellMessage, Reason, group_messages
 from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
 
 WRITTEN = 'a written answer that a person reads'
@@ -108,10 +108,10 @@ def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
         of_cells[record.student_id, record.assignment].append(record)
     said = {each: _verdicts_of(graded_notebook(course, *each)) for each in whose}
     failures = list(_failures(said))
-    looks = grouped(_looks(rows, of_cells, said))
+    looks = group_messages(_find_manual_work(rows, of_cells, said))
     return Tally(
         assignments=tuple(_assignments(course, whose, of_cells, failures)),
-        reasons=tuple(grouped(failures)),
+        reasons=tuple(group_messages(failures)),
         looks=tuple(sorted(looks, key=lambda each: each.words == WRITTEN)),
     )
 
@@ -163,7 +163,7 @@ def _check(
         passed=passed,
         missed=len(scored) - passed,
         waiting=len(cells) - len(scored),
-        why=next(iter(grouped(failures)), None),
+        why=next(iter(group_messages(failures)), None),
     )
 
 
@@ -176,7 +176,7 @@ def _failures(all_said: dict[tuple[str, str], _VerdictsOfOne]) -> Iterable[CellM
                 )
 
 
-def _looks(
+def _find_manual_work(
     rows: Sequence[SubmissionOutcome],
     of_cells: dict[tuple, list[CellScore]],
     all_said: dict[tuple[str, str], _VerdictsOfOne],

@@ -17,19 +17,22 @@ _FONTS = 'fontlist-*.json'
 
 
 @cache
-def sources() -> tuple[Path, ...]:
-    """Return what rooms see outside the system folders; `shown` mounts each by its index here."""
+def mount_sources() -> tuple[Path, ...]:
+    """Return what rooms see outside the system folders.
+
+    `bind_mount_options` mounts each by its index here.
+    """
     package = Path(my_robot_basics.__file__).parents[1]
     return (Path(sys.base_prefix).resolve(), Path(sys.prefix), package, *_font_list())
 
 
-def shown(seen: str, *, configuration: str) -> list[str]:
+def bind_mount_options(seen: str, *, configuration: str) -> list[str]:
     """Return the part of a bwrap command that mounts all that a room sees, read-only.
 
-    The folder `seen` contains `sources()` by their index. The list of fonts is mounted in
+    The folder `seen` contains `mount_sources()` by their index. The list of fonts is mounted in
     `configuration`, the room's MPLCONFIGDIR, where matplotlib looks for it.
     """
-    base, prefix, package, *fonts = sources()
+    base, prefix, package, *fonts = mount_sources()
     options = []
     for name in _SYSTEM:
         if Path(name).is_symlink():

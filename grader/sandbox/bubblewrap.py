@@ -4,13 +4,13 @@ import os
 import sys
 from pathlib import Path
 
-from grader.sandbox.bind_mounts import shown, sources
+from grader.sandbox.bind_mounts import bind_mount_options, mount_sources
 from grader.sandbox.limits import (
     OUT_OF_MEMORY_SCORE,
     ROOM_DISK_BYTES,
     ROOM_FILES,
     ROOM_TERMINALS,
-    limited,
+    prlimit_command,
 )
 
 ROOMS = ('student', 'test')
@@ -65,7 +65,7 @@ def holder_command(user: int | None, given: dict[str, Path]) -> list[str]:
     """
     seen = [
         '--tmpfs', '/tmp', '--dir', _SEEN,
-        *_bound(dict(enumerate(sources()))),
+        *_bound(dict(enumerate(mount_sources()))),
         *_bound(given),
         '--dir', DISKS,
     ]  # fmt: skip
@@ -115,7 +115,7 @@ def room_command(
         '--bind', f'{disk}/kernel', f'{INSIDE}/kernel',
         '--bind', f'{disk}/home', f'{INSIDE}/home',
         '--ro-bind', f'{_SEEN}/{room}', f'{INSIDE}/given',
-        *shown(_SEEN, configuration=ENVIRONMENT['MPLCONFIGDIR']),
+        *bind_mount_options(_SEEN, configuration=ENVIRONMENT['MPLCONFIGDIR']),
         *accounts,
         '--remount-ro', '/proc',
         '--remount-ro', '/dev',
@@ -123,7 +123,7 @@ def room_command(
         '--chdir', f'{INSIDE}/home/work',
         '--unsetenv', 'JPY_PARENT_PID',  # a kernel that can't find this parent would exit
         '--seccomp', str(seccomp),
-        '--', *limited(),
+        '--', *prlimit_command(),
     ]  # fmt: skip
 
 

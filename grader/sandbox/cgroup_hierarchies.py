@@ -2,7 +2,8 @@
 
 In version 2 a cgroup that has child cgroups must not contain processes. So graders move into a
 cgroup of their own, GRADERS, beside those that they make. They do so only in a tree that is theirs
-to use: delegated by systemd (`scoped` asks for it), in a container, or as root without systemd.
+to use: delegated by systemd (`command_in_scope` asks for it), in a container, or as root without
+systemd.
 """
 
 import contextlib
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from grader.sandbox.cgroup_paths import holds, own_paths
+from grader.sandbox.cgroup_paths import own_paths, reachable_folders
 from grader.sandbox.systemd_scopes import SYSTEMD, UNIT, has_scopes, scope_command
 
 GRADERS = 'mrb-graders'
@@ -53,7 +54,7 @@ def hierarchies() -> Hierarchies:
     return found
 
 
-def scoped(command: tuple[str, ...]) -> tuple[str, ...]:
+def command_in_scope(command: tuple[str, ...]) -> tuple[str, ...]:
     """Return the command, run where cgroups can be made, if systemd can provide such a place.
 
     That is a scope, which `systemd-run` starts for this user, and which ends with the command.
@@ -74,7 +75,7 @@ def _found(proc: Path) -> Hierarchies | NoCgroups:
             return Hierarchies(1, _writable(folders))
         if '' not in paths:
             raise NoCgroups('this Linux has no cgroups')
-        top = _folder(proc, '/', '') if holds(proc, '/', '') else None
+        top = _folder(proc, '/', '') if reachable_folders(proc, '/', '') else None
         folder = _version_2(_folder(proc, paths[''], ''), top)
         controllers = _words(folder / 'cgroup.subtree_control')
         return Hierarchies(2, {name: folder for name in WANTED if name in controllers})
@@ -94,7 +95,7 @@ def _uncounted(command_line: Path = Path('/proc/cmdline')) -> str:
 
 def _folder(proc: Path, path: str, controller: str) -> Path:
     """Return the folder of a cgroup. Raises NoCgroups if it is not mounted here."""
-    for folder in holds(proc, path, controller):
+    for folder in reachable_folders(proc, path, controller):
         return folder
     raise NoCgroups(f'the cgroup {path} is not mounted here')
 

@@ -24,7 +24,7 @@ def _mounts(proc: Path, controller: str) -> Iterator[tuple[str, str]]:
             yield root, where.replace(r'\040', ' ')
 
 
-def holds(proc: Path, path: str, controller: str) -> list[Path]:
+def reachable_folders(proc: Path, path: str, controller: str) -> list[Path]:
     """Return the folders through which a cgroup can be reached."""
     inside = [(os.path.relpath(path, root), where) for root, where in _mounts(proc, controller)]
     return [Path(where, below) for below, where in inside if not below.startswith('..')]

@@ -137,7 +137,7 @@ class SandboxCgroups:
         return all(gone)
 
 
-def joining(cgroup: RoomCgroup | None) -> list[str]:
+def join_command(cgroup: RoomCgroup | None) -> list[str]:
     """Return the beginning of a command that runs the rest in a room's cgroup."""
     if cgroup is None:
         return []

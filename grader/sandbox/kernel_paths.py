@@ -125,7 +125,7 @@ def make_paths(room: str) -> KernelPaths:
     return KernelPaths(folder, folder / 'kernel', inside=folder, environment=environment)
 
 
-def passed_on() -> dict[str, str]:
+def inherited_variables() -> dict[str, str]:
     """Return the variables that every Python process of the grader gets, in a room or not."""
     environment = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
     return environment | _ALWAYS
@@ -139,7 +139,7 @@ def environment_of(
     Only the test room gets the seed.
     """
     home = paths.inside / 'home'
-    environment = passed_on()
+    environment = inherited_variables()
     environment |= paths.environment | {
         'MY_ROBOT_BASICS_ROOM': room,
         'MY_ROBOT_BASICS_DOMAIN_ID': str(domain_id),

@@ -83,7 +83,7 @@ def process_limits() -> dict[int, int]:
     return limits
 
 
-def let_us_open_more() -> None:
+def raise_own_file_limit() -> None:
     """Raise our own soft limit of open files above that of rooms.
 
     Linux counts files in flight over sockets by user, and a room may have the same user as we do:
@@ -95,7 +95,7 @@ def let_us_open_more() -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
-def limited() -> list[str]:
+def prlimit_command() -> list[str]:
     """Return the beginning of a command that runs the rest within PROCESS_LIMITS."""
     names = {number: name.removeprefix('RLIMIT_').lower() for name, number in _constants()}
     return [

@@ -22,10 +22,10 @@ from grader.sandbox.bubblewrap import (
     slot_user,
 )
 from grader.sandbox.cgroup_hierarchies import NoCgroups
-from grader.sandbox.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, joining
+from grader.sandbox.cgroups import MemoryEvents, RoomCgroup, SandboxCgroups, join_command
 from grader.sandbox.holder import Holder
 from grader.sandbox.kernel_paths import Keeper, KernelPaths, make_folder
-from grader.sandbox.limits import let_us_open_more
+from grader.sandbox.limits import raise_own_file_limit
 from grader.sandbox.memory_watch import watch_memory
 from grader.sandbox.seccomp import seccomp_filter
 from grader.sandbox.temporary_folders import note_cgroups, own_folder
@@ -39,7 +39,7 @@ class Sandbox:
 
     def __init__(self, *, slot: int) -> None:
         """Prepare; `slot` is a small number that nothing else on this machine uses meanwhile."""
-        let_us_open_more()
+        raise_own_file_limit()
         self._user = slot_user(slot)
         self._watch: asyncio.Future | None = None
         self._killed: set[int] = set()
@@ -110,7 +110,7 @@ class Sandbox:
             info_fd=info_fd,
             counted=self._cgroups is not None,
         )
-        return [*joining(self.cgroup(room)), *command]
+        return [*join_command(self.cgroup(room)), *command]
 
     def _make_cgroups(self) -> None:
         if self._cgroups is not None:

@@ -43,7 +43,7 @@ def note_cgroups(name: str, folders: Iterable[Path]) -> Path:
     return note
 
 
-def sweep(parent: Path) -> list[Path]:
+def remove_stale_folders(parent: Path) -> list[Path]:
     """Remove this user's folders whose process has ended; return them."""
     removed = []
     for folder in parent.glob(f'{PREFIX}*'):
@@ -58,7 +58,7 @@ def sweep(parent: Path) -> list[Path]:
 
 @cache
 def _own_folder(parent: Path, process: int) -> Path:
-    sweep(parent)
+    remove_stale_folders(parent)
     while True:
         folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=parent))
         # programs that clean /tmp from time to time do not remove a locked folder

@@ -10,7 +10,7 @@ from grader.common.errors import TaskFailed
 from grader.common.pool import Pool
 from grader.judging.task import GradingTask, Result, pack, unpack
 from grader.kernels.isolation import require_isolation
-from grader.sandbox.cgroup_hierarchies import scoped
+from grader.sandbox.cgroup_hierarchies import command_in_scope
 from grader.sandbox.limits import (
     IN_FLIGHT_EACH,
     MOST_IN_FLIGHT,
@@ -48,7 +48,7 @@ class Workers:
             least=min(least, fit), most=self.capacity, step=self._number
         )
         self._each = -(-least // self._number)
-        self._command = command or scoped(COMMAND)
+        self._command = command or command_in_scope(COMMAND)
         self._processes: list[WorkerProcess] = []
         self._pool = Pool(self.capacity)
         self._entered = 0
