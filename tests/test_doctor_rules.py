@@ -7,7 +7,7 @@ import pytest
 from made_evidence import DEADLOCK, SILENT, TOPIC, end, healthy, replaced
 from my_robot_basics.doctor import action_rules, picture, remaps, report, rules, service_rules
 from my_robot_basics.doctor.evidence import NodeState
-from my_robot_basics.doctor.remaps import of_command
+from my_robot_basics.doctor.remaps import remaps_in_command
 from my_robot_basics.doctor.rules import judge
 
 
@@ -178,7 +178,7 @@ def test_every_rule_is_in_its_table(table):
     ],
 )
 def test_remapping_rules_are_read_from_command_lines(words, rules):
-    found = of_command(words)
+    found = remaps_in_command(words)
     assert [(remap.command, remap.name, remap.instead) for remap in found] == rules
 
 
@@ -194,7 +194,7 @@ def test_remappings_of_processes_in_a_different_domain_are_ignored(
     (process / 'cmdline').write_text('talker\0--ros-args\0-r\0/a:=/b\0')
     (process / 'environ').write_text(f'{environment}\0')
     monkeypatch.setattr(remaps, 'PROCESSES', tmp_path)
-    assert bool(remaps.of_domain(domain_id)) == is_seen
+    assert bool(remaps.remaps_in_domain(domain_id)) == is_seen
 
 
 def test_the_report_names_rate_and_faults_in_order():

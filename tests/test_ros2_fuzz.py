@@ -75,7 +75,7 @@ class BriefGraph(Graph):
 @pytest.fixture
 def in_this_process(monkeypatch):
     monkeypatch.setattr(stopping, 'watch', lambda: None)
-    monkeypatch.setattr(stopping, 'leave_in_good_order', lambda: None)
+    monkeypatch.setattr(stopping, 'only_record_signals', lambda: None)
     for command, verb in VERBS:
         name = f'{command}_{verb}'.rstrip('_')
         module = importlib.import_module(f'my_robot_basics.ros2.verbs.{name}')

@@ -155,7 +155,7 @@ import atexit, os, signal, sys
 from my_robot_basics.ros2 import main, stopping
 from my_robot_basics.ros2.verbs import interface_list
 def stop(args):
-    stopping.leave_in_good_order()
+    stopping.only_record_signals()
     os.kill(os.getpid(), signal.SIGINT)
     stopping.check()
 interface_list.main = stop

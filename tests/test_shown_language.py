@@ -36,7 +36,7 @@ def test_messages_beside_ros2_output_are_in_the_language_of_the_terminal(monkeyp
     monkeypatch.setenv(speaking.OF_TERMINALS, 'zh_CN')
     monkeypatch.setattr(environment, '_joined', RunningLesson(0, 7, 1, '03_publisher'))
     monkeypatch.setattr(overlays, '_said', set())
-    environment.say_where()
+    environment.print_joined_lesson()
     overlays.say(overlays.gone('/ws/install/arm'))
     joined, gone = capsys.readouterr().err.splitlines()
     assert joined == '已加入最后启动的课 03_publisher：ROS_DOMAIN_ID=7'

@@ -121,7 +121,7 @@ def look(watcher: Watcher, name: str, *, domain_id: int, look_sec: float) -> Act
         name=name,
         endpoints=endpoints,
         nodes=dict.fromkeys(actions.take(watcher.node).node_names, NodeState(answers=None)),
-        remaps=remaps.of_domain(domain_id),
+        remaps=remaps.remaps_in_domain(domain_id),
         domain_id=domain_id,
         missing_participants=missing_participants(watcher.node, domain_id),
         callbacks=view.lasting(),

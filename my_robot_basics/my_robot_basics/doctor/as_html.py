@@ -3,7 +3,7 @@
 import html
 
 from my_robot_basics.doctor.evidence import Diagnosis, Finding
-from my_robot_basics.doctor.report import fields, opening
+from my_robot_basics.doctor.report import fields, first_sentence
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language
 
@@ -15,7 +15,7 @@ CODE_STYLE = 'margin:2px 0;white-space:pre-wrap;overflow-wrap:anywhere'
 def tell_as_html(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
     """Return the whole diagnosis as HTML, with the words of `report.tell`."""
     items = ''.join(_item(finding, language) for finding in diagnosis.findings)
-    first = f'<p>{html.escape(opening(diagnosis, language))}</p>'
+    first = f'<p>{html.escape(first_sentence(diagnosis, language))}</p>'
     shown = f'{first}\n<ol>\n{items}</ol>' if items else first
     return f'<div style="{STYLE}">{shown}</div>'
 

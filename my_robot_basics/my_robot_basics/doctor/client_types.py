@@ -27,6 +27,6 @@ def types_differ(
         seen=seen,
         fix=f'use the same type in {client.node_name}'
         f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
-        code=code.create('client', type_name=type_name, name=name),
+        code=code.creation_line('client', type_name=type_name, name=name),
         broken=(client,),
     )

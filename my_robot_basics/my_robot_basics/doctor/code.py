@@ -21,7 +21,7 @@ _REST = {
 _TYPES = {'publisher': 'JointState', 'subscription': 'JointState'}
 
 
-def create(kind: Kind, *, type_name: str, name: str, qos_profile: str = '10') -> str:
+def creation_line(kind: Kind, *, type_name: str, name: str, qos_profile: str = '10') -> str:
     """Return the line that creates an endpoint of the topic, service or action `name`.
 
     `qos_profile` is for topics: a QoSProfile as Python code, or the queue's depth.

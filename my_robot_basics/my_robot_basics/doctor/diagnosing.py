@@ -70,17 +70,17 @@ def diagnose(
     found: list[Diagnosis] = []
     if topic is not None:
         if other_domains and not all(topic.ends(kind) for kind in topic.NEEDED):
-            ends = _elsewhere(name, domain_id, looking.endpoints_of)
+            ends = _ends_in_other_domains(name, domain_id, looking.endpoints_of)
             topic = dataclasses.replace(topic, elsewhere=ends)
         found.append(rules.judge(topic))
     if service is not None:
         if other_domains and not service.servers:
-            ends = _elsewhere(name, domain_id, service_looking.endpoints_of)
+            ends = _ends_in_other_domains(name, domain_id, service_looking.endpoints_of)
             service = dataclasses.replace(service, elsewhere=ends)
         found.append(service_rules.judge(service))
     if action is not None:
         if other_domains and not action.servers:
-            ends = _elsewhere(name, domain_id, action_looking.endpoints_of)
+            ends = _ends_in_other_domains(name, domain_id, action_looking.endpoints_of)
             action = dataclasses.replace(action, elsewhere=ends)
         found.append(action_rules.judge(action))
     return tuple(found)
@@ -110,7 +110,7 @@ def _is_near(name: str, ends: Iterable[Endpoint]) -> bool:
     return any(are_similar(name, end.name) for end in ends)
 
 
-def _elsewhere(
+def _ends_in_other_domains(
     name: str, domain_id: int, ends_of: Callable[[Node], Iterable[Endpoint]]
 ) -> dict[int, tuple[Endpoint, ...]]:
     """Return the ends with that name in the other domains that are in use on this machine."""

@@ -17,7 +17,13 @@ from rclpy.task import Future, Task
 
 from my_robot_basics.doctor import waits
 from my_robot_basics.doctor.callback import Callback
-from my_robot_basics.doctor.work import Work, in_progress, own_nodes, spinning, stacks
+from my_robot_basics.doctor.work import (
+    Work,
+    callbacks_in_progress,
+    own_nodes,
+    spinning_executors,
+    thread_stacks,
+)
 
 _NOT_THEIRS = (
     f'{Path(rclpy.__file__).parent}/',
@@ -47,10 +53,10 @@ class Inside:
             self._look()
 
     def _look(self) -> None:
-        now, threads = time.monotonic(), stacks()
-        self._spun.update(spinning(threads))
+        now, threads = time.monotonic(), thread_stacks()
+        self._spun.update(spinning_executors(threads))
         works = {}
-        for work in in_progress(threads):
+        for work in callbacks_in_progress(threads):
             since, last = self._works.get(work.task, (now, work))
             # while a coroutine resumes, its frames can't be seen: keep the former ones
             works[work.task] = since, work if work.frames else last
@@ -100,12 +106,12 @@ class Inside:
     def _last_requests(self) -> Iterator[tuple[Future, str]]:
         for node in own_nodes():
             for client in node.clients:
-                pending = waits.pending(client)
+                pending = waits.pending_requests(client)
                 if pending and client.service_name == self._service_name:
                     yield pending[max(pending)], node.get_fully_qualified_name()
 
 
-def visible() -> frozenset[str]:
+def observable_nodes() -> frozenset[str]:
     """Return the nodes of this process whose callbacks can be observed."""
     return frozenset(
         node.get_fully_qualified_name()
@@ -114,7 +120,7 @@ def visible() -> frozenset[str]:
     )
 
 
-def taken() -> frozenset[str]:
+def nodes_taken_from_executors() -> frozenset[str]:
     """Return the nodes of this process that were removed from the executor that spun them."""
     return frozenset(node.get_fully_qualified_name() for node in own_nodes() if _is_taken(node))
 
@@ -126,7 +132,7 @@ def _is_taken(node: Node) -> bool:
 
 def _describe(work: Work, works: list[Work], *, seconds: float) -> Callback:
     theirs = [f for f in work.frames if not f.f_code.co_filename.startswith(_NOT_THEIRS)]
-    waits_in, client = waits.waits(work.frames)
+    waits_in, client = waits.current_wait(work.frames)
     node = work.node or (waits.node_of(client) if client else None)
     return Callback(
         node_name=node.get_fully_qualified_name() if node else '',
@@ -136,9 +142,9 @@ def _describe(work: Work, works: list[Work], *, seconds: float) -> Callback:
         service_name=_service_of(work),
         waits_in=waits_in,
         waits_for=client.service_name if client else '',
-        keeps=waits.keeps(work, works),
-        asks=waits.asks(work),
-        holds=tuple(sorted({n.get_fully_qualified_name() for n in waits.held(work)})),
+        keeps=waits.response_blocker(work, works),
+        asks=waits.pending_service(work),
+        holds=tuple(sorted({n.get_fully_qualified_name() for n in waits.blocked_nodes(work)})),
     )
 
 

@@ -56,7 +56,7 @@ def look(
         endpoints=endpoints,
         nodes={},
         has_clock=bool(watcher.node.get_publishers_info_by_topic('/clock')),
-        remaps=remaps.of_domain(domain_id),
+        remaps=remaps.remaps_in_domain(domain_id),
         domain_id=domain_id,
         missing_participants=missing_participants(watcher.node, domain_id),
     )

@@ -23,7 +23,7 @@ def main(argv: list[str] | None = None) -> int:
         ' does not answer, and how to fix it. No service is ever called, and no goal sent.',
         epilog='Exit status: 0 when all is well, 1 when a fault was found, 2 on wrong usage.',
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'name', help='of the topic, service or action, for example /kinematics/joint_states'
         ),
@@ -52,7 +52,7 @@ def main(argv: list[str] | None = None) -> int:
         name, domain_id = full_name(args.name), environment.domain_id()
     except (ValueError, CommandError) as error:
         parser.error(str(error))
-    environment.say_where()
+    environment.print_joined_lesson()
     try:
         # imported late: rclpy is slow to import, and `--help` does not need it
         from my_robot_basics.doctor.diagnosing import diagnose

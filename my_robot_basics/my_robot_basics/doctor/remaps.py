@@ -9,18 +9,18 @@ from my_robot_basics.doctor.evidence import Remap
 PROCESSES = Path('/proc')
 
 
-def of_domain(domain_id: int) -> tuple[Remap, ...]:
+def remaps_in_domain(domain_id: int) -> tuple[Remap, ...]:
     """Return the rules in the command lines of this user's processes in a ROS domain."""
     return tuple(
         remap
         for folder in PROCESSES.iterdir()
         if folder.name.isdigit()
-        for remap in of_command(_words(folder / 'cmdline'))
+        for remap in remaps_in_command(_words(folder / 'cmdline'))
         if _domain(_words(folder / 'environ')) == f'{domain_id}'
     )
 
 
-def of_command(words: list[str]) -> Iterator[Remap]:
+def remaps_in_command(words: list[str]) -> Iterator[Remap]:
     """Yield the rules in one command line."""
     if '--ros-args' not in words:
         return

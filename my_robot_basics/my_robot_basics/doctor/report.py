@@ -42,10 +42,10 @@ def tell(diagnosis: Diagnosis, language: str = ENGLISH) -> str:
     """Return the whole diagnosis: one paragraph for each fault, or that all is well."""
     findings = enumerate(diagnosis.findings, start=1)
     paragraphs = [_paragraph(i, finding, language) for i, finding in findings]
-    return '\n\n'.join([opening(diagnosis, language), *paragraphs])
+    return '\n\n'.join([first_sentence(diagnosis, language), *paragraphs])
 
 
-def opening(diagnosis: Diagnosis, language: str) -> str:
+def first_sentence(diagnosis: Diagnosis, language: str) -> str:
     """Return the first sentence: whether there is a fault, and a summary of the evidence."""
     evidence = diagnosis.evidence
     if not diagnosis.findings:

@@ -70,15 +70,15 @@ def look(
         endpoints=endpoints,
         nodes=dict.fromkeys(services.take(watcher.node).node_names, NodeState(answers=None))
         | answers,
-        remaps=remaps.of_domain(domain_id),
+        remaps=remaps.remaps_in_domain(domain_id),
         domain_id=domain_id,
         missing_participants=missing_participants(watcher.node, domain_id),
         callbacks=view.lasting(),
         looked_sec=watch.wall_sec(),
         raised=raised(name),
-        visible=inside.visible(),
+        visible=inside.observable_nodes(),
         unspun=unspun,
-        taken=inside.taken(),
+        taken=inside.nodes_taken_from_executors(),
         unanswered=tuple(
             Unanswered(node_name=node_name, seconds=seconds)
             for node_name, seconds in view.unanswered(at_least_sec=SURE_SEC).items()

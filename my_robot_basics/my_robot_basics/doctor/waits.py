@@ -25,7 +25,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 _CODES = {inspect.unwrap(function).__code__: name for name, function in _FUNCTIONS.items()}
 
 
-def waits(frames: Iterable[FrameType]) -> tuple[str, Client | None]:
+def current_wait(frames: Iterable[FrameType]) -> tuple[str, Client | None]:
     """Return the rclpy function in which a callback waits, and the client of the response."""
     for frame in frames:
         name = _CODES.get(frame.f_code, '')
@@ -36,13 +36,13 @@ def waits(frames: Iterable[FrameType]) -> tuple[str, Client | None]:
     return '', None
 
 
-def keeps(work: Work, others: Iterable[Work]) -> Keeps:
+def response_blocker(work: Work, others: Iterable[Work]) -> Keeps:
     """Return what blocks the response that a callback waits for, or ''.
 
     To take the response, the executor that spins the client's node needs a free thread, and no
     other callback of the client's mutually exclusive group may be in progress.
     """
-    name, client = waits(work.frames)
+    name, client = current_wait(work.frames)
     if client is None or name == SERVER:
         return ''
     node = node_of(client)
@@ -63,7 +63,7 @@ def keeps(work: Work, others: Iterable[Work]) -> Keeps:
     return ''
 
 
-def held(work: Work) -> Iterable[Node]:
+def blocked_nodes(work: Work) -> Iterable[Node]:
     """Yield the nodes that answer no parameter request while the callback is in progress."""
     own = {*own_nodes()}
     if work.is_running and type(work.executor) is SingleThreadedExecutor:
@@ -74,16 +74,16 @@ def held(work: Work) -> Iterable[Node]:
         yield work.node
 
 
-def asks(work: Work) -> str:
+def pending_service(work: Work) -> str:
     """Return a service with a response that can't be taken before the callback returns, or ''."""
     if not work.is_running or type(work.executor) is not SingleThreadedExecutor:
         return ''
     nodes = {*own_nodes()} & {*work.executor.get_nodes()}
     clients = [client for node in nodes for client in node.clients]
-    return next((client.service_name for client in clients if pending(client)), '')
+    return next((client.service_name for client in clients if pending_requests(client)), '')
 
 
-def pending(client: Client) -> dict[int, Future]:
+def pending_requests(client: Client) -> dict[int, Future]:
     """Return a client's requests without a response, by their sequence numbers."""
     # a finished one stays in rclpy's dict until the executor spins again
     requests = client._pending_requests.copy().items()
@@ -92,7 +92,7 @@ def pending(client: Client) -> dict[int, Future]:
 
 def _fills(executor: MultiThreadedExecutor, works: Iterable[Work]) -> bool:
     """Whether blocking calls whose responses this executor must take occupy all its threads."""
-    clients = [waits(w.frames) for w in works if w.is_running and w.executor is executor]
+    clients = [current_wait(w.frames) for w in works if w.is_running and w.executor is executor]
     blocked = [
         client
         for name, client in clients
@@ -108,7 +108,7 @@ def _asked_by(future: Future) -> Client | None:
             client
             for node in own_nodes()
             for client in node.clients
-            if any(future is each for each in pending(client).values())
+            if any(future is each for each in pending_requests(client).values())
         ),
         None,
     )

@@ -38,10 +38,10 @@ class Work:
 
 def own_nodes() -> Iterator[Node]:
     """Yield the nodes of this process, except the course's hidden ones."""
-    return filter(_is_theirs, nodes_here())
+    return filter(_is_student_node, nodes_here())
 
 
-def stacks() -> list[list[FrameType]]:
+def thread_stacks() -> list[list[FrameType]]:
     """Return the frames of each thread, from the outermost."""
     found = []
     frame: FrameType | None
@@ -54,13 +54,13 @@ def stacks() -> list[list[FrameType]]:
     return found
 
 
-def spinning(threads: list[list[FrameType]]) -> set[Executor]:
+def spinning_executors(threads: list[list[FrameType]]) -> set[Executor]:
     """Return the executors of which a thread executes a method."""
     callers = (frame.f_locals.get('self') for frames in threads for frame in frames)
     return {caller for caller in callers if isinstance(caller, Executor)}
 
 
-def in_progress(threads: list[list[FrameType]]) -> Iterator[Work]:
+def callbacks_in_progress(threads: list[list[FrameType]]) -> Iterator[Work]:
     """Yield the callbacks of this process that have started and have not returned."""
     running = {
         frames[i].f_locals['self']: frames[i + 1 :]
@@ -72,7 +72,7 @@ def in_progress(threads: list[list[FrameType]]) -> Iterator[Work]:
     executors = {task._executor() for task in running} | {n.executor for n in own_nodes()}
     for executor in filter(None, executors):
         for task, entity, node in [*getattr(executor, '_tasks', [])]:
-            if task.done() or (node is not None and not _is_theirs(node)):
+            if task.done() or (node is not None and not _is_student_node(node)):
                 continue
             frames = running.get(task) or [*_suspended(task._handler)]
             if frames or task.executing():
@@ -80,7 +80,7 @@ def in_progress(threads: list[list[FrameType]]) -> Iterator[Work]:
                 yield Work(task, executor, entity, node, frames, is_running)
 
 
-def _is_theirs(node: Node) -> bool:
+def _is_student_node(node: Node) -> bool:
     """Whether a node is neither a hidden one of the course nor destroyed."""
     try:
         return not node.get_name().startswith(HIDDEN)

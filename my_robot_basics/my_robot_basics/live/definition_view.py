@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.language.speaking import in_language_here
-from my_robot_basics.ros2.definitions import DefinedMember, meanings
+from my_robot_basics.ros2.definitions import DefinedMember, line_meanings
 
 PACKAGE = 'turn_interfaces'
 """The package of lesson 10's exercise."""
@@ -21,7 +21,7 @@ def show_definition(text: str, *, own_types: Collection[str] = (), package: str 
             shorten(line),
             _describe_member(meaning) if isinstance(meaning, DefinedMember) else meaning,
         )
-        for line, meaning in meanings(text, package=package, own_types=own_types)
+        for line, meaning in line_meanings(text, package=package, own_types=own_types)
     ]
     width = min(_WIDTH, max((len(line) for line, _ in lines), default=0))
     for line, words in lines:

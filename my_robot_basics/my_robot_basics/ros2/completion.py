@@ -8,7 +8,7 @@ from my_robot_basics.ros2 import interfaces
 from my_robot_basics.ros2.graph import Graph
 
 
-def offer(action: argparse.Action, completer: Callable[..., Iterable[str]]) -> None:
+def set_completer(action: argparse.Action, completer: Callable[..., Iterable[str]]) -> None:
     """Set the completer of an argument, in the attribute that argcomplete reads."""
     vars(action)['completer'] = completer
 

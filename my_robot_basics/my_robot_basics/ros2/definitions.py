@@ -111,7 +111,7 @@ def read_line(line: str, *, package: str, own_types: Collection[str]) -> Defined
     return DefinedMember(parsed.name, type_, parsed.default_value, is_constant=False)
 
 
-def meanings(
+def line_meanings(
     text: str, *, package: str, own_types: Collection[str]
 ) -> Iterator[tuple[str, DefinedMember | str]]:
     """Yield each line without its comment, with its meaning or why it is refused; '' for ---."""

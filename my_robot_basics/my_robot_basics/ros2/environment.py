@@ -39,7 +39,7 @@ def _domain_to_join() -> str:
     return str(_joined.domain_id if _joined else 0)
 
 
-def say_where() -> None:
+def print_joined_lesson() -> None:
     """Print to stderr which lesson was joined, unless ROS_DOMAIN_ID was set in the shell."""
     if _joined and '_ARGCOMPLETE' not in os.environ:
         told = (

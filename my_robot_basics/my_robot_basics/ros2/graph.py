@@ -59,8 +59,8 @@ class Graph:
             validate_node_name(self._node_name)
         except InvalidNodeNameException as error:
             raise CommandError(str(error)) from None
-        environment.say_where()
-        stopping.leave_in_good_order()
+        environment.print_joined_lesson()
+        stopping.only_record_signals()
         rclpy.init(
             args=[],
             domain_id=environment.domain_id(),

@@ -26,7 +26,7 @@ def main(argv: list[str] | None = None) -> int | str | None:
     stopping.watch()
     sys.stdout = sys.stdout or open(os.devnull, 'w')  # noqa: SIM115 - where a shell closed it
     words = sys.argv[1:] if argv is None else argv
-    if sentence := not_here(words):
+    if sentence := ros2cli_only_message(words):
         print(sentence, file=sys.stderr)
         return USAGE
     parser = make_parser(words)
@@ -43,7 +43,7 @@ def main(argv: list[str] | None = None) -> int | str | None:
         return PIPE_CLOSED
 
 
-def not_here(words: list[str]) -> str | None:
+def ros2cli_only_message(words: list[str]) -> str | None:
     """Return a sentence about a command or verb that only ros2cli has, or None."""
     command, verb = _chosen(words)
     if command in ELSEWHERE:

@@ -94,7 +94,7 @@ def add_node(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a verb for one node."""
     arguments.add_discovery(parser)
     node_name = parser.add_argument('node_name', help='Name of the ROS node')
-    completion.offer(node_name, completion.node_names)
+    completion.set_completer(node_name, completion.node_names)
     parser.add_argument(
         '--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well'
     )
@@ -111,7 +111,7 @@ def add_one_parameter(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a verb for one parameter of one node."""
     add_node(parser)
     parameter_name = parser.add_argument('parameter_name', help='Name of the parameter')
-    completion.offer(parameter_name, parameter_names)
+    completion.set_completer(parameter_name, parameter_names)
 
 
 def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:

@@ -30,7 +30,7 @@ def watch() -> None:
     signal.signal(signal.SIGALRM, _give_up)
 
 
-def leave_in_good_order() -> None:
+def only_record_signals() -> None:
     """From now on, only record a signal, which `check` then raises."""
     global _cleans_up
     _cleans_up = True
@@ -42,7 +42,7 @@ def check() -> None:
         raise Stopped(_noted)
 
 
-def may_go_on(stopped: Stopped) -> bool:
+def resume_after(stopped: Stopped) -> bool:
     """Whether the command may continue after this signal; if so, clear the record of it.
 
     It may after Ctrl-C, and after the terminal was closed. The next signal is recorded again.

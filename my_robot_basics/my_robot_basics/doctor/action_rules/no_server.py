@@ -20,6 +20,8 @@ def examine(evidence: ActionEvidence) -> Iterator[Finding]:
         seen=f'none; clients: {" and ".join(sending) or "none"}; other nodes: {others or "none"}',
         fix='start the node that serves it, and check that its constructor has this line; a goal'
         ' that is sent before is lost, so send it again',
-        code=code.create('server', type_name=(types or ['/action/'])[0], name=evidence.name),
+        code=code.creation_line(
+            'server', type_name=(types or ['/action/'])[0], name=evidence.name
+        ),
         missing='server',
     )

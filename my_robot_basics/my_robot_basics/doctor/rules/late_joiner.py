@@ -28,7 +28,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             seen='it requests VOLATILE, and the last message was sent'
             f' {ago_sec:.1f} s before the doctor started',
             fix=f'request the kept messages in {subscription.node_name}',
-            code=code.create(
+            code=code.creation_line(
                 'subscription',
                 type_name=subscription.type_name,
                 name=evidence.name,

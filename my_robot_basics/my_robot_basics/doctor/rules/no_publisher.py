@@ -23,6 +23,6 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         expected=f'a publisher on {evidence.name}',
         seen=f'none; running: {running}' if running else 'none, and no node is running',
         fix=fix,
-        code=code.create('publisher', type_name=(types or [''])[0], name=evidence.name),
+        code=code.creation_line('publisher', type_name=(types or [''])[0], name=evidence.name),
         missing='publisher',
     )

@@ -17,6 +17,6 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
         expected=f'a subscription on {evidence.name}',
         seen=f'none; the publisher belongs to {senders}' if senders else 'none',
         fix='start the node that subscribes, and check that its constructor has this line',
-        code=code.create('subscription', type_name=(types or [''])[0], name=evidence.name),
+        code=code.creation_line('subscription', type_name=(types or [''])[0], name=evidence.name),
         missing='subscription',
     )

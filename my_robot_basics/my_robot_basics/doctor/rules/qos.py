@@ -29,7 +29,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
                     for policy, (has, wants) in gaps.items()
                 ),
                 fix=f'request no more than is offered, in {subscription.node_name}',
-                code=code.create(
+                code=code.creation_line(
                     'subscription',
                     type_name=subscription.type_name,
                     name=evidence.name,

@@ -30,7 +30,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             seen=f'its {end.kind} has depth {end.depth}: while it is busy, a new message pushes'
             ' the oldest out, also when RELIABLE',
             fix=f'make the queue of the {end.kind} in {end.node_name} as long as a burst',
-            code=code.create(
+            code=code.creation_line(
                 end.kind,
                 type_name=end.type_name,
                 name=evidence.name,

@@ -29,7 +29,7 @@ def examine(evidence: GraphEvidence) -> Iterator[Finding]:
                 seen=f'none, and {uses} ({how}): {why}' if why else f'none, and {uses} ({how})',
                 fix=f'if {right} is right, write it in {wrong.node_name} (or start '
                 f'that with --ros-args -r {wrong.name}:={right})',
-                code=code.create(wrong.kind, type_name=wrong.type_name, name=right),
+                code=code.creation_line(wrong.kind, type_name=wrong.type_name, name=right),
                 broken=(wrong,),
                 missing=kind,
             )

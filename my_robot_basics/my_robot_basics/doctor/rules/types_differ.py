@@ -20,6 +20,6 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             f' {subscription.type_name}: no message arrives',
             fix=f'use the same type in {subscription.node_name}'
             f' (from {type_name.replace("/", ".").rpartition(".")[0]})',
-            code=code.create('subscription', type_name=type_name, name=evidence.name),
+            code=code.creation_line('subscription', type_name=type_name, name=evidence.name),
             broken=(subscription,),
         )

@@ -24,6 +24,6 @@ def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
         seen=f'{seen}, and {f"these run, too: {others}" if others else "no other node runs"}',
         fix='start the node that serves it, and check that its constructor has this line; a'
         ' request that is sent before is lost, so ask for it again',
-        code=code.create('server', type_name=(types or [''])[0], name=evidence.name),
+        code=code.creation_line('server', type_name=(types or [''])[0], name=evidence.name),
         missing='server',
     )

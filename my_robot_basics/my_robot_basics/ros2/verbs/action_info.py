@@ -10,7 +10,7 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'action_name', help="Name of the ROS action to get info (e.g. '/fibonacci')"
         ),

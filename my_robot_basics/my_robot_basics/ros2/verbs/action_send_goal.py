@@ -12,11 +12,11 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument('action_name', help="Name of the ROS action (e.g. '/fibonacci')"),
         completion.action_names,
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'action_type',
             help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         completion.action_types_of,
     )
     source = parser.add_mutually_exclusive_group()
-    completion.offer(
+    completion.set_completer(
         source.add_argument(
             'goal',
             nargs='?',
@@ -103,7 +103,7 @@ def _send(graph: Graph, client: Any, goal: Any, *, show_feedback: bool, limit_se
             raise CommandError(f'The goal has not ended after waiting {limit_sec} seconds.')
         result = _answer(graph, ending, 'getting result')
     except Stopped as stopped:
-        if not stopping.may_go_on(stopped) or _has_ended(handle):
+        if not stopping.resume_after(stopped) or _has_ended(handle):
             raise
         _cancel(graph, handle)
         result = _answer(graph, ending, 'getting result')

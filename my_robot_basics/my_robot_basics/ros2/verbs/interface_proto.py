@@ -7,7 +7,7 @@ from my_robot_basics.ros2 import completion, interfaces
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'type', help="Show an interface definition (e.g. 'example_interfaces/msg/String')"
         ),

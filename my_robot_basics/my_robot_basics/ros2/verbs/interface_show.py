@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="Show an interface definition (e.g. 'std_msgs/msg/String'). Passing '-' reads the "
         "argument from stdin (e.g. 'ros2 topic type /chatter | ros2 interface show -').",
     )
-    completion.offer(type_, completion.interface_types)
+    completion.set_completer(type_, completion.interface_types)
 
 
 def main(args: argparse.Namespace) -> None:

@@ -11,7 +11,7 @@ from my_robot_basics.ros2.node_name import NodeName
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.offer(
+    completion.set_completer(
         parser.add_argument('node_name', help='Node name to request information'),
         completion.node_names,
     )

@@ -11,7 +11,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     parameters.add_node(parser)
     names = parser.add_argument('parameter_names', nargs='+', help='Names of the parameters')
-    completion.offer(names, parameters.parameter_names)
+    completion.set_completer(names, parameters.parameter_names)
 
 
 def main(args: argparse.Namespace) -> None:

@@ -12,7 +12,7 @@ from my_robot_basics.ros2.parameters import ParameterServices, absolute, type_na
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.offer(
+    completion.set_completer(
         parser.add_argument('node_name', nargs='?', help='Name of the ROS node'),
         completion.node_names,
     )

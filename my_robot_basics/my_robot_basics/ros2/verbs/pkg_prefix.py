@@ -7,7 +7,7 @@ from my_robot_basics.ros2 import completion, packages
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument('package_name', help='The package name'), completion.package_names
     )
     parser.add_argument(

@@ -14,11 +14,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='Prefix command, which should go before the executable. Command must be wrapped in '
         "quotes if it contains spaces (e.g. --prefix 'gdb -ex run --args').",
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument('package_name', help='Name of the ROS package'),
         completion.package_names,
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument('executable_name', help='Name of the executable'),
         completion.executable_names,
     )
@@ -43,5 +43,5 @@ def main(args: argparse.Namespace) -> int:
         raise CommandError('No executable found')
     if len(paths) > 1:
         raise CommandError('\n- '.join(['Multiple executables found:', *map(str, paths)]))
-    environment.say_where()
+    environment.print_joined_lesson()
     return run([*prefix, str(paths[0]), *args.argv])

@@ -12,20 +12,20 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'service_name', help="Name of the ROS service to call to (e.g. '/add_two_ints')"
         ),
         completion.service_names,
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'service_type', help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')"
         ),
         completion.service_types_of,
     )
     source = parser.add_mutually_exclusive_group()
-    completion.offer(
+    completion.set_completer(
         source.add_argument(
             'values',
             nargs='?',

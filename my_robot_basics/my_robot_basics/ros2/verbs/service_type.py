@@ -8,7 +8,7 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'service_name',
             help="Name of the ROS service to get type (e.g. '/talker/list_parameters')",

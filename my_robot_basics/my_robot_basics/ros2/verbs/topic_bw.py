@@ -15,7 +15,7 @@ UNITS = ((1, 'B', 0), (1000, 'KB', 2), (1000_000, 'MB', 2))
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'topic_name', metavar='topic', help='Topic name to monitor for bandwidth utilization'
         ),

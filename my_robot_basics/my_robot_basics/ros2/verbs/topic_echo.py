@@ -18,13 +18,13 @@ DEFAULT_TRUNCATE_LENGTH = 128
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'topic_name', help="Name of the ROS topic to listen to (e.g. '/chatter')"
         ),
         completion.topic_names,
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'message_type', nargs='?', help="Type of the ROS message (e.g. 'std_msgs/msg/String')"
         ),

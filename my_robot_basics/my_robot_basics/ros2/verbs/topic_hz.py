@@ -15,7 +15,7 @@ SECOND_NSEC = 10**9
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'topic_name', help="Name of the ROS topic to listen to (e.g. '/chatter')"
         ),

@@ -9,7 +9,7 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'topic_name', help="Name of the ROS topic to get info (e.g. '/chatter')"
         ),

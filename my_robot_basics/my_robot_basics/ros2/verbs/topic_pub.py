@@ -15,20 +15,20 @@ TAKEN_SEC = 5.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'topic_name', help="Name of the ROS topic to publish to (e.g. '/chatter')"
         ),
         completion.topic_names,
     )
-    completion.offer(
+    completion.set_completer(
         parser.add_argument(
             'message_type', help="Type of the ROS message (e.g. 'std_msgs/String')"
         ),
         completion.topic_types,
     )
     source = parser.add_mutually_exclusive_group()
-    completion.offer(
+    completion.set_completer(
         source.add_argument(
             'values',
             nargs='?',
