@@ -81,29 +81,31 @@ def test_making_the_workspace_reports_missing_build_tools_before_a_build(folder,
 
 def test_installed_build_tools_are_not_reported_as_missing(programs):
     programs('cc', 'c++', 'make')
-    assert build_tools.why_not(NAME) == lacking('cmake is', 'cmake')
+    assert build_tools.build_problem(NAME) == lacking('cmake is', 'cmake')
     programs('cmake')
-    assert build_tools.why_not(NAME) == ''
+    assert build_tools.build_problem(NAME) == ''
 
 
 def test_a_compiler_with_an_alternative_name_counts_but_a_missing_one_does_not(
     programs, monkeypatch
 ):
     programs('clang', 'clang++', 'gmake', 'cmake')
-    assert build_tools.why_not(NAME) == ''
+    assert build_tools.build_problem(NAME) == ''
     monkeypatch.setenv('CC', 'ccache gcc')
-    assert build_tools.why_not(NAME) == lacking('gcc is', 'build-essential')
+    assert build_tools.build_problem(NAME) == lacking('gcc is', 'build-essential')
 
 
 def test_missing_python_headers_are_reported_with_their_package(programs, tmp_path, monkeypatch):
     programs('cc', 'c++', 'make', 'cmake')
     monkeypatch.setattr(sysconfig, 'get_path', lambda name: str(tmp_path / name))
     version = '{}.{}'.format(*sys.version_info)
-    assert build_tools.why_not(NAME) == lacking(f'Python.h of Python {version} is', PYTHON_DEV)
+    assert build_tools.build_problem(NAME) == lacking(
+        f'Python.h of Python {version} is', PYTHON_DEV
+    )
 
 
 def test_no_installed_copy_is_promised_for_a_package_that_is_not_installed(programs):
-    assert 'until then' not in build_tools.why_not('own_interfaces')
+    assert 'until then' not in build_tools.build_problem('own_interfaces')
 
 
 # --- the interfaces in the workspace -------------------------------------------------------------
@@ -145,7 +147,9 @@ def test_the_cmake_files_of_ros_name_no_folder_of_another_machine():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(build_tools.missing()), reason='there is no compiler, or no CMake')
+@pytest.mark.skipif(
+    bool(build_tools.missing_programs()), reason='there is no compiler, or no CMake'
+)
 def test_interfaces_built_by_colcon_are_interchangeable_with_the_wheel(folder, capsys):
     """One build serves all of these assertions: it takes 15 s of both cores."""
     built = bash(folder, BUILD)

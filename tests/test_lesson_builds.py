@@ -22,7 +22,7 @@ GROUP = '  <member_of_group>rosidl_interface_packages</member_of_group>\n'
 FILES = '  "msg/Turns.msg"\n  "srv/CountTurns.srv"\n'
 
 with_a_compiler = pytest.mark.skipif(
-    bool(build_tools.missing()), reason='there is no compiler, or no CMake'
+    bool(build_tools.missing_programs()), reason='there is no compiler, or no CMake'
 )
 
 

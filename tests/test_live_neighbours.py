@@ -68,16 +68,16 @@ time.sleep(60)
 def test_a_killed_node_is_not_a_neighbour():
     """It does not announce its end, and stays on the graph until its lease expires."""
     neighbours = Neighbours()
-    neighbours.meet()
+    neighbours.start()
     try:
         with subprocess.Popen([sys.executable, '-c', TALKER]) as process:
             while not neighbours._is_announced('/talker'):
                 assert process.poll() is None
                 time.sleep(0.01)
             process.kill()
-        assert not neighbours.have('/talker')
+        assert not neighbours.has_node('/talker')
     finally:
-        neighbours.leave()
+        neighbours.stop()
 
 
 @pytest.mark.starts
@@ -93,12 +93,12 @@ def test_a_node_name_left_on_the_graph_without_a_node_is_not_a_neighbour(monkeyp
     context.init(domain_id=classroom.enter())
     node = Node('talker', context=context, start_parameter_services=False)
     neighbours = Neighbours()
-    neighbours.meet()
+    neighbours.start()
     try:
         while not neighbours._is_announced('/talker'):
             time.sleep(0.01)
-        assert not neighbours.have('/ghost')
+        assert not neighbours.has_node('/ghost')
     finally:
-        neighbours.leave()
+        neighbours.stop()
         node.destroy_node()
         context.try_shutdown()

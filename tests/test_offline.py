@@ -219,7 +219,9 @@ def test_the_whole_course_is_set_up_and_validates_without_a_network(offline):
 @pytest.mark.slow
 @pytest.mark.isolation
 @pytest.mark.timeout(1800)
-@pytest.mark.skipif(bool(build_tools.missing()), reason='there is no compiler, or no CMake')
+@pytest.mark.skipif(
+    bool(build_tools.missing_programs()), reason='there is no compiler, or no CMake'
+)
 def test_the_whole_course_builds_its_interfaces_without_a_network(offline):
     assert offline('workspace').returncode == 0
     built = offline('ros-shell', '-c', BUILD.format(*['arm_interfaces'] * 2))

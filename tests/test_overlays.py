@@ -318,7 +318,7 @@ def test_an_unreadable_package_folder_raises_an_import_error(built, monkeypatch)
 
     monkeypatch.setattr(sourced.os, 'listdir', refuse)
     with pytest.raises(ImportError, match=r'cannot be read \(\[Errno 13\] Permission denied: '):
-        sourced._look_at(str(built.modules.parent), NAME)
+        sourced._check_package(str(built.modules.parent), NAME)
 
 
 @pytest.mark.starts

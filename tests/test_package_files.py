@@ -4,7 +4,7 @@ import os
 
 import pytest
 from my_robot_basics.session import package_files
-from my_robot_basics.session.package_files import MAX_BYTES, MAX_FILES, read, why_not
+from my_robot_basics.session.package_files import MAX_BYTES, MAX_FILES, read, reason_left_out
 from package_maker import make_package
 
 
@@ -52,7 +52,7 @@ def test_a_file_that_is_left_out_is_named_with_the_reason(folder, path, reason):
 
 @pytest.mark.parametrize('path', ['greeter/log/a.py', 'größe/ünï.md', 'a b.txt', 'config/a.yaml'])
 def test_a_students_own_file_is_taken(path):
-    assert why_not(path.split('/')) == ''
+    assert reason_left_out(path.split('/')) == ''
 
 
 def test_no_link_is_followed_and_no_device_read(folder):

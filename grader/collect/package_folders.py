@@ -54,7 +54,7 @@ class ChosenFiles:
             return [f'the package `{package}` was not collected: {self.problem}']
         told = [package_files.left_out_clause(each.path, reason) for each, reason in self.left]
         start = f'of the package `{package}` was not collected: '
-        return [start + clause for clause in package_files.few(told)]
+        return [start + clause for clause in package_files.first_clauses(told)]
 
 
 def split(
@@ -98,7 +98,7 @@ def choose(package: IncomingPackage, student: str) -> ChosenFiles:
     for name in folders & {*files}:
         chosen.left.append((files.pop(name), 'a folder has the same name'))
     sizes = {name: each.readable.stat().st_size for name, each in files.items()}
-    chosen.problem = package_files.too_much(sizes)
+    chosen.problem = package_files.reason_too_large(sizes)
     if chosen.problem:
         chosen.left += [(each, chosen.problem) for each in files.values()]
     else:
@@ -140,7 +140,7 @@ def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> s
         return 'it is in an archive: unpack that in the folder of the package'
     if each.file is None:
         return 'it could not be read'
-    return package_files.why_not(parts)
+    return package_files.reason_left_out(parts)
 
 
 def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPackage]]:

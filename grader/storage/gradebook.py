@@ -139,7 +139,9 @@ def _keep_files(course: Course, submission: Submission) -> None:
     folder = course.folder('autograded', submission.student_id, submission.assignment)
     beside = (*submission.extra_files, *from_exchange(submission))
     files = {each.name: each.read_bytes() for each in beside}
-    files |= {name: package_files.content(f) for name, f in submission.package_files.items()}
+    files |= {
+        name: package_files.read_plain_file(f) for name, f in submission.package_files.items()
+    }
     folder.mkdir(parents=True, exist_ok=True)
     for name in course.packages(submission.assignment):
         shutil.rmtree(folder / name, ignore_errors=True)  # files of an earlier hand-in

@@ -6,7 +6,7 @@ from itertools import chain
 from pathlib import Path
 
 from my_robot_basics.live.package_faults import NO_PYTHON
-from my_robot_basics.session.package_files import PackageFiles, few
+from my_robot_basics.session.package_files import PackageFiles, first_clauses
 
 
 def unnamed_needs(package: str, files: PackageFiles) -> tuple[str, ...]:
@@ -28,7 +28,7 @@ def unnamed_needs(package: str, files: PackageFiles) -> tuple[str, ...]:
         f'and rosdep would not know that it is needed; add <depend>{name}</depend>'
         for name in sorted(ros_packages & importing.keys())
     )
-    return few(list(clauses))
+    return first_clauses(list(clauses))
 
 
 def _named(manifest: Path) -> set[str]:

@@ -77,7 +77,7 @@ def launch(
     def on_name(name: str) -> None:
         same = [k for k, b in _running.items() if b.node.get_fully_qualified_name() == name]
         _stop_keys(ended.noted(same, (key, name)))
-        if _neighbours.have(name):
+        if _neighbours.has_node(name):
             raise _NotStartedByLive(name)
         panel.listen(name)
 
@@ -158,7 +158,7 @@ def ensure_rclpy() -> None:
             f'note: rclpy was initialised in ROS domain {domain_id}, and this lesson is in '
             f'{domain_of_lesson}: call rclpy.shutdown(), then run this cell again'
         )
-    _neighbours.meet()
+    _neighbours.start()
 
 
 def shut_down() -> None:
@@ -195,5 +195,5 @@ def _leave_nothing(owner_pid: int) -> None:
     # not in a forked child, which has neither these threads nor these DDS participants
     if os.getpid() == owner_pid:
         shut_down()
-        _neighbours.leave()
+        _neighbours.stop()
         notebook.leave()

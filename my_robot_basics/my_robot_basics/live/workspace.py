@@ -95,7 +95,7 @@ def _about_interfaces(workspace: Path) -> str:
     is_built = built.prefix.exists()
     if is_built and (sentence := built.fault() or built.difference()):
         return sentence
-    if sentence := build_tools.why_not(INTERFACES):
+    if sentence := build_tools.build_problem(INTERFACES):
         return sentence
     words = f'the same for {INTERFACES} (about 15 s):'
     if is_built:

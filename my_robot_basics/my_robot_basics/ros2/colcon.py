@@ -29,7 +29,7 @@ def main() -> int:
 async def _build(task: AmentCmakeBuildTask) -> int:
     """Build a package as colcon does, if this machine can."""
     name = task.context.pkg.name
-    if sentence := build_tools.why_not(name):
+    if sentence := build_tools.build_problem(name):
         others = f'what needs no compiler is built with: colcon build --packages-skip {name}'
         task.context.put_event_into_queue(StderrLine(f'{sentence}; {others}\n'.encode()))
         return 1

@@ -7,23 +7,23 @@ import sysconfig
 from pathlib import Path
 
 
-def missing() -> dict[str, str]:
+def missing_programs() -> dict[str, str]:
     """Return each missing program, and the Debian or Ubuntu package that contains it."""
     header = Path(sysconfig.get_path('include'), 'Python.h')
     python = 'python{}.{}-dev'.format(*sys.version_info)
     wanted = {
-        'gcc': (_is_here('CC', 'cc', 'gcc', 'clang'), 'build-essential'),
-        'g++': (_is_here('CXX', 'c++', 'g++', 'clang++'), 'build-essential'),
-        'make': (_is_here('', 'make', 'gmake'), 'build-essential'),
-        'cmake': (_is_here('CMAKE_COMMAND', 'cmake'), 'cmake'),
+        'gcc': (_has_program('CC', 'cc', 'gcc', 'clang'), 'build-essential'),
+        'g++': (_has_program('CXX', 'c++', 'g++', 'clang++'), 'build-essential'),
+        'make': (_has_program('', 'make', 'gmake'), 'build-essential'),
+        'cmake': (_has_program('CMAKE_COMMAND', 'cmake'), 'cmake'),
         f'Python.h of Python {python[6:-4]}': (header.is_file(), python),
     }
     return {name: package for name, (is_here, package) in wanted.items() if not is_here}
 
 
-def why_not(package: str) -> str:
+def build_problem(package: str) -> str:
     """Say why a package of interfaces cannot be compiled here; '' if it can."""
-    lacking = missing()
+    lacking = missing_programs()
     if not lacking:
         return ''
     *most, last = lacking
@@ -37,7 +37,7 @@ def why_not(package: str) -> str:
     return why
 
 
-def _is_here(variable: str, *programs: str) -> bool:
+def _has_program(variable: str, *programs: str) -> bool:
     """Whether the program that an environment variable names, or else one of these, exists."""
     named = os.environ.get(variable, '').split()[:1]
     return any(map(shutil.which, named or programs))

@@ -37,7 +37,7 @@ def claim() -> Claim:
     process, however that ends. Processes that the holder starts do not keep it.
     """
     for domain_id in range(FIRST, LAST + 1):
-        if holder := hold(f'my_robot_basics.domain.{domain_id}'):
+        if holder := bind_abstract_socket(f'my_robot_basics.domain.{domain_id}'):
             return Claim(domain_id, holder)
     raise NoFreeDomain(
         f'all {LAST - FIRST + 1} ROS domains of this machine are taken, one by each running '
@@ -45,7 +45,7 @@ def claim() -> Claim:
     )
 
 
-def hold(name: str) -> socket.socket | None:
+def bind_abstract_socket(name: str) -> socket.socket | None:
     """Bind an abstract Unix socket to a name, or return None if the name is taken.
 
     The name is taken until the socket is closed or this process ends.
@@ -66,10 +66,10 @@ def hold(name: str) -> socket.socket | None:
 _held: weakref.WeakSet[socket.socket] = weakref.WeakSet()
 
 
-def _let_go() -> None:
+def _close_held_sockets() -> None:
     for holder in list(_held):
         holder.close()
 
 
 # a forked child uses its parent's domain, but must not keep it reserved after the parent's end
-os.register_at_fork(after_in_child=_let_go)
+os.register_at_fork(after_in_child=_close_held_sockets)

@@ -16,7 +16,7 @@ LONG_SEC = 1e8
 """About three years: longer than a node runs."""
 
 
-def limit(executor_class: Any) -> None:
+def add_timeouts(executor_class: Any) -> None:
     """Give LONG_SEC as the timeout to each wait of the class that has none."""
     once = executor_class.spin_once
 
@@ -28,14 +28,14 @@ def limit(executor_class: Any) -> None:
 
     executor_class.spin_once, executor_class.spin = spin_once, spin
     for name in ('spin_until_future_complete', 'spin_once_until_future_complete'):
-        setattr(executor_class, name, _limited(getattr(executor_class, name)))
+        setattr(executor_class, name, _with_timeout(getattr(executor_class, name)))
 
 
-def _limited(wait: Callable[..., None]) -> Callable[..., None]:
+def _with_timeout(wait: Callable[..., None]) -> Callable[..., None]:
     def wait_for(self: Any, future: Future, timeout_sec: float | None = None) -> None:
         wait(self, future, LONG_SEC if timeout_sec is None else timeout_sec)
 
     return wait_for
 
 
-limit(rclpy_implementation.EventsExecutor)
+add_timeouts(rclpy_implementation.EventsExecutor)

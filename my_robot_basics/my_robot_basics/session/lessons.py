@@ -41,7 +41,9 @@ def announce(domain_id: int) -> None:
     opened = os.environ.get('JPY_SESSION_NAME')  # the notebook's path, set by JupyterLab
     name = Path(opened).stem if opened else Path.cwd().name
     name = re.sub(r'[^\w-]', '_', name, flags=re.ASCII)[:_LONGEST_NAME] or 'notebook'
-    _announcement = domain.hold(f'{_PREFIX}.{domain_id}.{time.time_ns()}.{os.getpid()}.{name}')
+    _announcement = domain.bind_abstract_socket(
+        f'{_PREFIX}.{domain_id}.{time.time_ns()}.{os.getpid()}.{name}'
+    )
 
 
 def running() -> list[RunningLesson]:

@@ -25,7 +25,7 @@ class Neighbours:
         self._observer: Node | None = None
         self._since = 0.0
 
-    def meet(self) -> None:
+    def start(self) -> None:
         """Start the observer in this kernel's ROS domain, unless it runs."""
         if self._observer is not None and self._observer.context.ok():
             return  # not ok: Ctrl-C has shut it down with all other contexts
@@ -40,14 +40,14 @@ class Neighbours:
         )
         self._since = time.monotonic()
 
-    def leave(self) -> None:
+    def stop(self) -> None:
         """Destroy the observer and its context."""
         if self._observer is not None:
             self._observer.destroy_node()
             self._observer.context.try_shutdown()
             self._observer = None
 
-    def have(self, name: str) -> bool:
+    def has_node(self, name: str) -> bool:
         """Whether a node of that fully qualified name exists."""
         # a node that another thread of this process has just created is not on the graph yet
         if any(node.get_fully_qualified_name() == name for node in nodes_here()):
@@ -67,7 +67,7 @@ class Neighbours:
         A name alone does not prove a node: rmw keeps it for ever if it handles a participant's
         last message after the participant's end.
         """
-        assert self._observer is not None  # `meet` was called
+        assert self._observer is not None  # `start` was called
         names = {
             f'{namespace.rstrip("/")}/{node_name}'
             for node_name, namespace in self._observer.get_node_names_and_namespaces()

@@ -61,19 +61,21 @@ class Overlay:
 
     def unreadable(self, error: Exception) -> str:
         """Say that a file or folder of the package cannot be read, and what to do."""
-        return self._so(f'cannot be read ({error}), so it is damaged or belongs to another user')
+        return self._message(
+            f'cannot be read ({error}), so it is damaged or belongs to another user'
+        )
 
     def _fault(self) -> str:
         if not (self.prefix / self.python_folder).is_dir():
             for other in sorted(self.prefix.glob(f'lib/python3.*/site-packages/{self.package}')):
                 built = other.parts[-3].removeprefix('python')
                 this = '{}.{}'.format(*sys.version_info)
-                return self._so(f'was built for Python {built}, and this is Python {this}')
+                return self._message(f'was built for Python {built}, and this is Python {this}')
         for file in self._needed():
             if not (self.prefix / file).exists():
-                return self._so(f'is only half built, without {file}')
+                return self._message(f'is only half built, without {file}')
             if file.suffix == '.so' and not _is_library(self.prefix / file):
-                return self._so(f'is only half built: {file} is empty or cut short')
+                return self._message(f'is only half built: {file} is empty or cut short')
         return ''
 
     def difference(self) -> str:
@@ -84,19 +86,19 @@ class Overlay:
         try:
             return self._difference()
         except (OSError, UnicodeDecodeError) as error:
-            return self._so(f'cannot be compared with its sources ({error})')
+            return self._message(f'cannot be compared with its sources ({error})')
 
     def _difference(self) -> str:
         shared = self.prefix / 'share' / self.package
         for file in self._definitions():
             source = self.workspace / 'src' / self.package / file
             if source.is_file() and source.read_bytes() != (shared / file).read_bytes():
-                return self._so(f'was built before {file} in src was changed')
+                return self._message(f'was built before {file} in src was changed')
         for file in self._definitions():
             name = Path('share', self.package, file).with_suffix('.json')
             ours, theirs = (_type_hashes(Path(root, name)) for root in (sys.prefix, self.prefix))
             if theirs is None:
-                return self._so(f'has a broken {name}')
+                return self._message(f'has a broken {name}')
             if ours and ours != theirs:
                 return (
                     f'{self.package} in {self.prefix} has another {file} than the course, so '
@@ -121,7 +123,7 @@ class Overlay:
         listed = index.read_text(encoding='utf-8').split() if index.is_file() else []
         return [Path(file) for file in listed if not file.endswith('.idl')]
 
-    def _so(self, fault: str) -> str:
+    def _message(self, fault: str) -> str:
         folders, option = f'build/{self.package} install/{self.package}', ''
         if self.is_merged:
             folders, option = 'build install', '--merge-install '

@@ -51,12 +51,12 @@ def read(folder: Path) -> PackageFiles:
             left_out.append(left_out_clause('/'.join(parts), reason))
         else:
             sizes['/'.join(parts)] = path.lstat().st_size
-    problem = too_much(sizes)
+    problem = reason_too_large(sizes)
     taken = {} if problem else {name: folder / name for name in sorted(sizes)}
-    return PackageFiles(taken, few(left_out), problem)
+    return PackageFiles(taken, first_clauses(left_out), problem)
 
 
-def why_not(parts: Sequence[str]) -> str:
+def reason_left_out(parts: Sequence[str]) -> str:
     """Say why a file with that path in the package's folder is left out; '' if it is taken."""
     for at, part in enumerate(parts):
         is_folder = at < len(parts) - 1
@@ -75,7 +75,7 @@ def why_not(parts: Sequence[str]) -> str:
     return ''
 
 
-def too_much(sizes: Mapping[str, int]) -> str:
+def reason_too_large(sizes: Mapping[str, int]) -> str:
     """Say why a package with files of these sizes is not taken at all; '' if it is."""
     if len(sizes) > MAX_FILES:
         what = f'it has {len(sizes):,} files, and at most {MAX_FILES} are taken'
@@ -84,7 +84,7 @@ def too_much(sizes: Mapping[str, int]) -> str:
         what = f'it has {size:.1f} MB, and at most {MAX_BYTES / 1e6:.0f} MB are taken'
     else:
         return ''
-    if top := _holds_most(sizes):
+    if top := _largest_folder(sizes):
         return f'{what}: remove what is no part of the package (most are in {top}/)'
     return f'{what}: remove what is no part of the package'
 
@@ -95,7 +95,7 @@ def left_out_clause(path: str, reason: str) -> str:
     return f'{shown if len(shown) <= 120 else shown[:119] + "…"} ({reason})'
 
 
-def few(clauses: Sequence[str]) -> tuple[str, ...]:
+def first_clauses(clauses: Sequence[str]) -> tuple[str, ...]:
     """Return the first MOST_REASONS clauses, and how many more there are."""
     more = len(clauses) - MOST_REASONS
     return (*clauses[:MOST_REASONS], *([f'and {more:,} more'] if more > 0 else []))
@@ -109,10 +109,10 @@ def write(files: Mapping[str, Path], folder: Path) -> None:
     for name, source in files.items():
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(content(source))
+        target.write_bytes(read_plain_file(source))
 
 
-def content(file: Path) -> bytes:
+def read_plain_file(file: Path) -> bytes:
     """Read a file, unless a link or device has replaced it meanwhile. Raises OSError."""
     descriptor = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(descriptor, 'rb') as opened:
@@ -131,7 +131,7 @@ def _walk(folder: Path, above: tuple[str, ...]) -> Iterator[tuple[Path, tuple[st
         mode = path.lstat().st_mode
         is_folder = stat.S_ISDIR(mode)
         # 'x' stands for a file in the folder, so that the folder's name is judged as a folder's
-        if reason := why_not((*parts, 'x') if is_folder else parts):
+        if reason := reason_left_out((*parts, 'x') if is_folder else parts):
             yield path, parts, reason
         elif stat.S_ISLNK(mode):
             yield path, parts, 'a link: only files are taken'
@@ -152,7 +152,7 @@ def _is_plain(name: str) -> bool:
     )
 
 
-def _holds_most(sizes: Mapping[str, int]) -> str:
+def _largest_folder(sizes: Mapping[str, int]) -> str:
     """Return the top-level folder with more than half of MAX_FILES files; '' if none has."""
     counts: dict[str, int] = {}
     for name in sizes:

@@ -68,14 +68,14 @@ class Guard:
             return None
         for folder in self.folders:
             if os.path.isdir(f'{folder}/{name}'):
-                _look_at(folder, name)
+                _check_package(folder, name)
                 return None
             if f'/install/{name}/lib/' in folder and not os.path.exists(folder):
-                return _instead(folder, name)
+                return _find_elsewhere(folder, name)
         return None
 
 
-def _look_at(folder: str, name: str) -> None:
+def _check_package(folder: str, name: str) -> None:
     """Raise ImportError if the package cannot be loaded; print how it differs, if it does."""
     try:
         files = os.listdir(f'{folder}/{name}')
@@ -98,7 +98,7 @@ def _overlay(folder: str, name: str) -> Any:
     return checks.Overlay(checks.Path(folder).parents[2], name)
 
 
-def _instead(folder: str, name: str) -> ModuleSpec | None:
+def _find_elsewhere(folder: str, name: str) -> ModuleSpec | None:
     """Find the module elsewhere, and say so; raises ModuleNotFoundError if it is nowhere."""
     checks = _checks()
     sentence = checks.gone(checks.Path(folder).parents[2])
