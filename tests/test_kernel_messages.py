@@ -13,7 +13,7 @@ from my_robot_basics.validate.limits import (
     MAX_MESSAGE_BYTES,
     MAX_MESSAGES_WAITING,
 )
-from my_robot_basics.validate.messages import next_message, unpacked
+from my_robot_basics.validate.messages import next_message, parse_message_part
 from my_robot_basics.validate.outputs import CUT_OFF, MAX_OUTPUT_CHARACTERS
 from my_robot_basics.validate.questions import reply_of
 from my_robot_basics.validate.verdict import judge
@@ -109,7 +109,7 @@ def test_a_message_of_too_many_parts_is_ignored(spare_kernel, run_cell, part):
     assert result.ran_to_end
     assert text_of(result) == 'after\n'
     with pytest.raises(ValueError, match='300,001 objects and lists'):
-        unpacked(f'[{part * 300_000}0]'.encode())
+        parse_message_part(f'[{part * 300_000}0]'.encode())
 
 
 def test_each_socket_limits_waiting_messages_and_their_size(spare_kernel):

@@ -18,7 +18,7 @@ from my_robot_basics.validate.passed_answers import (
     read_passes,
     record,
 )
-from my_robot_basics.validate.progress import main, progress_on
+from my_robot_basics.validate.progress import main, read_progress
 from my_robot_basics.validate.remembering import has_passed, remember
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 
@@ -57,7 +57,7 @@ def passes_in(file, notebook):
 
 
 def state(page, file, name=NAME):
-    shown = [each.exercises for each in progress_on(page, file).lessons]
+    shown = [each.exercises for each in read_progress(page, file).lessons]
     return {each: found for exercises in shown for each, found in exercises.items()}[name]
 
 
@@ -82,10 +82,10 @@ def test_an_exercise_counts_as_passed_only_with_the_answer_that_passed(page, fil
     before = notebook.read_bytes()
     assert passes_in(file, notebook) == ()
     assert state(page, file) == 'passed'
-    assert 'Passed in Validate: 1 of ' in progress_on(page, file).summary
+    assert 'Passed in Validate: 1 of ' in read_progress(page, file).summary
     edit(notebook, NAME, lambda source: source.replace('radians(theta1_deg)', 'theta1_deg'))
     assert state(page, file) == 'changed'
-    assert 'Passed in Validate: 0 of ' in progress_on(page, file).summary
+    assert 'Passed in Validate: 0 of ' in read_progress(page, file).summary
     notebook.write_bytes(before)
     assert state(page, file) == 'passed'
 
@@ -135,7 +135,7 @@ def test_a_file_that_is_not_the_contents_page_is_refused(tmp_path, file, content
     other = tmp_path / 'other.ipynb'
     other.write_bytes(content)
     with pytest.raises(CourseError, match='is not the contents page'):
-        progress_on(other, file)
+        read_progress(other, file)
 
 
 def test_a_package_that_is_the_answer_counts_with_all_its_files(page, file):
@@ -187,7 +187,7 @@ DAMAGED = {
 def test_a_damaged_file_is_reported_kept_and_replaced(page, file, content):
     file.parent.mkdir(parents=True)
     file.write_bytes(content)
-    shown = progress_on(page, file)
+    shown = read_progress(page, file)
     assert 'is damaged, so your progress is not shown' in shown.notes[0]
     assert file.read_bytes() == content  # reading alone does not change the file
     (note,) = passes_in(file, notebook_of(page))
@@ -209,7 +209,7 @@ def test_a_file_of_a_newer_version_is_left_unchanged(page, file):
     (note,) = passes_in(file, notebook_of(page))
     assert 'was written by a newer version of the course' in note
     assert file.read_bytes() == newer
-    assert progress_on(page, file).notes == (note,)
+    assert read_progress(page, file).notes == (note,)
 
 
 def test_a_file_that_cannot_be_written_is_reported_without_an_error(page, file):

@@ -16,7 +16,7 @@ from my_robot_basics.feedback.python_errors import explained, what_to_do
 from my_robot_basics.graph import raised
 from my_robot_basics.live.bare_errors import made_with
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.trouble import trouble_in
+from my_robot_basics.validate.trouble import describe_cell_error
 from nbformat.v4 import new_output
 from rcl_interfaces.msg import FloatingPointRange
 from rclpy.action import ActionClient, ActionServer
@@ -243,7 +243,7 @@ def test_a_name_that_ros_refuses_is_explained_with_what_to_write(run, case):
             create(node, kinds[create], name, *[1] * (create is Node.create_publisher))
     except Exception as error:
         ename, evalue = type(error).__name__, str(error)
-    told = trouble_in('a', CellRun(error=new_output('error', ename=ename, evalue=evalue)))
+    told = describe_cell_error('a', CellRun(error=new_output('error', ename=ename, evalue=evalue)))
     assert why in told
     assert '^' not in told
     assert why in explained(f'its callback raised {ename}: {evalue} (line 4, in f: g(x))')
@@ -259,7 +259,7 @@ def test_the_full_stop_of_an_error_is_dropped_before_an_explanation():
 def test_the_note_on_a_stopped_cell_says_what_to_do():
     said = "'function' object has no attribute 'add_entity'"
     run = CellRun(error=new_output('error', ename='AttributeError', evalue=said))
-    told = trouble_in('five_hz-run', run)
+    told = describe_cell_error('five_hz-run', run)
     assert told == f'your cell `five_hz-run` stopped with AttributeError: {said}{DECIMAL_COMMA}'
 
 

@@ -15,7 +15,7 @@ from my_robot_basics.ros2 import environment
 from my_robot_basics.session import overlays
 from my_robot_basics.session.lessons import RunningLesson
 from my_robot_basics.validate.as_text import as_text
-from my_robot_basics.validate.cell_names import in_words
+from my_robot_basics.validate.cell_names import replace_cell_ids
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 from my_robot_basics.validate.text import columns
 
@@ -140,7 +140,7 @@ def report(language):
     check = CheckFeedback('a', 'Each message has both names', 2.0, 'failed', True, message=REASON)
     made = Report('a.ipynb', (ExerciseFeedback('five_hz', (), (check,)),), (), language)
     return made.with_words(
-        lambda text: in_words(text, nbformat.v4.new_notebook(), language), title=str
+        lambda text: replace_cell_ids(text, nbformat.v4.new_notebook(), language), title=str
     )
 
 
@@ -159,7 +159,7 @@ def test_a_cell_is_named_by_its_number_in_each_language():
     cell = nbformat.v4.new_code_cell('', metadata={'nbgrader': {'grade_id': 'five_hz'}})
     notebook = nbformat.v4.new_notebook(cells=[cell])
     text = 'the cell `five_hz` was changed: the original counts at grading'
-    shown = in_words(text, notebook, 'zh_CN')
+    shown = replace_cell_ids(text, notebook, 'zh_CN')
     assert shown == '单元格 `five_hz`（第 1 个单元格）被改动了：评分时以原来的为准'
 
 

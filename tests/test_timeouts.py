@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.validate import timeouts
-from my_robot_basics.validate.timeouts import LOOK_EVERY_SEC, MOST_TIMES, finished_while_served
+from my_robot_basics.validate.timeouts import LOOK_EVERY_SEC, MOST_TIMES, wait_for_end_by_cpu_time
 
 LIMIT_SEC = 10.0
 
@@ -24,7 +24,7 @@ def waits(monkeypatch):
         def used_sec():
             return 100.0 + gets * waited.wall_sec if counted(waited.wall_sec) else None
 
-        async def finished(done, seconds, is_alive, is_enough):
+        async def wait_for_end(done, seconds, is_alive, is_enough):
             if is_enough():
                 return False
             waited.wall_sec += seconds
@@ -33,9 +33,11 @@ def waits(monkeypatch):
         watch = SimpleNamespace(
             wall_sec=lambda: waited.wall_sec, free_sec=lambda: is_free * waited.wall_sec
         )
-        monkeypatch.setattr(timeouts, 'finished', finished)
+        monkeypatch.setattr(timeouts, 'wait_for_end', wait_for_end)
         monkeypatch.setattr(timeouts.pressure, 'Stopwatch', lambda: watch)
-        ended = asyncio.run(finished_while_served(None, LIMIT_SEC, None, lambda: floods, used_sec))
+        ended = asyncio.run(
+            wait_for_end_by_cpu_time(None, LIMIT_SEC, None, lambda: floods, used_sec)
+        )
         return ended, pytest.approx(waited.wall_sec, abs=2 * LOOK_EVERY_SEC)
 
     return wait

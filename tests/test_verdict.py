@@ -3,7 +3,7 @@
 import nbformat
 import pytest
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.verdict import Verdict, judge, ungraded, write_verdict
+from my_robot_basics.validate.verdict import Verdict, judge, leave_ungraded, write_verdict
 from nbformat.v4 import new_code_cell, new_output
 from nbgrader.utils import determine_grade
 
@@ -329,7 +329,7 @@ def test_a_failure_is_written_as_one_error_without_the_test(cell):
 
 
 def test_the_output_of_an_ungraded_cell_says_that_a_person_has_to_look(cell):
-    verdict = ungraded(cell, 'the test kernel did not start')
+    verdict = leave_ungraded(cell, 'the test kernel did not start')
     assert (verdict.outcome, verdict.score, verdict.points) == ('ungraded', None, 3.0)
     write_verdict(cell, verdict, [])
     assert cell.outputs[0].text == (

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from my_robot_basics.language.catalogues import read_translations
 from my_robot_basics.language.english import PHRASE, letters_left
-from my_robot_basics.language.picture_words import in_one_line, picture_in
+from my_robot_basics.language.picture_words import join_alt_text_lines, translate_alt_text
 from my_robot_basics.language.sentences import Sentences
 from my_robot_basics.language.templates import LETTERS, Template
 from nbformat import NotebookNode
@@ -95,8 +95,8 @@ class OutputWords:
     def _picture(self, output: NotebookNode) -> None:
         """Translate a picture's alternative text in all places of the output."""
         data = output.data
-        data['text/plain'] = picture_in(self.language, data['text/plain'], self.locale)
-        words = in_one_line(self.language, data['text/plain'], self.locale)
+        data['text/plain'] = translate_alt_text(self.language, data['text/plain'], self.locale)
+        words = join_alt_text_lines(self.language, data['text/plain'], self.locale)
         _, quote, source = data['text/html'].removeprefix(PICTURE).partition('"')
         data['text/html'] = f'{PICTURE}{html.escape(words)}{quote}{source}'
         for about in output.metadata.values():

@@ -13,8 +13,8 @@ from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
-from my_robot_basics.validate.together import together
-from my_robot_basics.validate.verdict import Verdict, refuse, write_verdict
+from my_robot_basics.validate.together import gather_or_cancel
+from my_robot_basics.validate.verdict import Verdict, fail_all_checks, write_verdict
 from nbformat import NotebookNode
 
 from grader.common.pool import Pool
@@ -118,7 +118,7 @@ async def execute_exercises(
     graded = nbformat.from_dict(notebook)
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).seed = seed
     if problem := graded.metadata.get(KEY, {}).get('problem'):
-        verdicts = refuse(graded, problem)
+        verdicts = fail_all_checks(graded, problem)
     else:
         in_sandbox = require_isolation(trust_students=trust_students)
         graded.metadata[KEY].in_sandbox = in_sandbox
@@ -139,7 +139,9 @@ async def _execute(work: _NotebookRun) -> list[Verdict]:
     with _counted() as others:
         places = asyncio.Semaphore(1 if others else SIDE_BY_SIDE)
         exercises = find_exercises(work.notebook)
-        in_order = await together(*(_judge(work, exercise, places) for exercise in exercises))
+        in_order = await gather_or_cancel(
+            *(_judge(work, exercise, places) for exercise in exercises)
+        )
     for judged in in_order:
         for index, run in judged.runs.items():
             work.notebook.cells[index].outputs = work.space.fit(run.outputs)

@@ -6,7 +6,7 @@ import zmq.asyncio
 from jupyter_client import AsyncKernelClient, AsyncKernelManager
 from my_robot_basics.validate.connecting import wait_for_sockets, wait_for_welcome
 from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
-from my_robot_basics.validate.messages import Messages, unpacked
+from my_robot_basics.validate.messages import Messages, parse_message_part
 
 from grader.common.errors import RoomFailure
 
@@ -35,7 +35,7 @@ class KernelConnection:
 
         await wait_for_sockets(manager, expect_alive)
         self._client = client = manager.client(context=self.context)
-        client.session.unpack = unpacked
+        client.session.unpack = parse_message_part
         client.start_channels(hb=False)
         self._messages = Messages(client)
         for channel in (client.iopub_channel, client.shell_channel):

@@ -10,9 +10,9 @@ from my_robot_basics.validate.messages import OnInput
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.timeouts import (
     UsedSec,
-    finished,
-    finished_in_grace,
-    finished_while_served,
+    wait_for_end,
+    wait_for_end_by_cpu_time,
+    wait_for_end_in_grace,
 )
 
 from grader.common.errors import RoomFailure
@@ -93,7 +93,7 @@ class GradingKernel:
         connection = self._connection
         cell = connection.messages.run(code, result, on_input=on_input, expressions=expressions)
         async with cell as done:
-            result.timed_out = not await finished_while_served(
+            result.timed_out = not await wait_for_end_by_cpu_time(
                 done,
                 timeout_sec,
                 self._is_alive,
@@ -107,7 +107,7 @@ class GradingKernel:
                     await self._kill()
             elif result.timed_out and self.alive:
                 await self._manager.interrupt_kernel()
-                if not await finished_in_grace(done, self._is_alive):
+                if not await wait_for_end_in_grace(done, self._is_alive):
                     self._ended_by_us = self.alive
                     await self._kill()
         if result.leaves:
@@ -162,7 +162,7 @@ class GradingKernel:
         """Whether the kernel still runs; wait first, because it may be about to end."""
         moment = asyncio.ensure_future(asyncio.sleep(_END_SEC))
         try:
-            await finished(moment, _END_SEC, self._is_alive)
+            await wait_for_end(moment, _END_SEC, self._is_alive)
         finally:
             moment.cancel()
         return self.alive

@@ -17,7 +17,7 @@ from my_robot_basics.validate.questions import (
     as_expression,
     reply_of,
 )
-from my_robot_basics.validate.together import together
+from my_robot_basics.validate.together import gather_or_cancel
 
 from grader.common.errors import RoomFailure
 from grader.kernels.kernel_exits import Responsibility, whose_memory
@@ -58,7 +58,7 @@ class GradingRooms:
         """Start both kernels, and check that a message from one reaches the other."""
         try:
             await self._open()
-            await together(self._prepare_student(), self._prepare_test())
+            await gather_or_cancel(self._prepare_student(), self._prepare_test())
             files = str(self._student.paths.inside / 'given' / 'files')
             await self._prepare(self._student, STUDENT_GOES.format(files=files))
         except BaseException as error:

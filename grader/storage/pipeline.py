@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import nbformat
-from my_robot_basics.validate.verdict import refuse
+from my_robot_basics.validate.verdict import fail_all_checks
 from nbformat import NotebookNode
 from nbformat.validator import normalize
 
@@ -119,7 +119,7 @@ def unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
     """
     notebook = restore(nbformat.v4.new_notebook(), template).notebook
     notebook.metadata[KEY] |= {'notes': [reason], 'problem': reason}
-    refuse(notebook, reason)
+    fail_all_checks(notebook, reason)
     return notebook
 
 

@@ -5,7 +5,7 @@ import html
 from typing import Any
 
 from my_robot_basics.language.catalogues import ENGLISH
-from my_robot_basics.language.picture_words import in_one_line, picture_in
+from my_robot_basics.language.picture_words import join_alt_text_lines, translate_alt_text
 
 Bundle = dict[str, Any]
 """MIME types and their data."""
@@ -22,8 +22,8 @@ def described(png: bytes, text: str, language: str = ENGLISH) -> tuple[Bundle, d
     The text is translated into the language if there is a translation. The HTML is for
     JupyterLab, which ignores the alternative text of a plain PNG; other front ends use the PNG.
     """
-    text = picture_in(language, text)
-    words = in_one_line(language, text)
+    text = translate_alt_text(language, text)
+    words = join_alt_text_lines(language, text)
     source = base64.b64encode(png).decode('ascii')
     image = f'<img alt="{html.escape(words)}" src="data:image/png;base64,{source}">'
     bundle = {'image/png': png, 'text/html': image, 'text/plain': text}

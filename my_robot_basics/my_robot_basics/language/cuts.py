@@ -15,7 +15,7 @@ _RAISES = re.compile(r'(Error|Exception|Interrupt|Exit):( |$)')
 """The name of an exception: Python's own message follows, with any colons and brackets."""
 
 
-def cuts(template: Template, found: Mapping[str, str]) -> bool:
+def is_cut(template: Template, found: Mapping[str, str]) -> bool:
     """Whether a match cuts a sentence, a quote or a pair of brackets, or leaves a place empty."""
     said = {place: QUOTED.sub('', text) for place, text in found.items()}
     ended = any('. ' in said[place] for place in template.places[:-1]) and template.letters > 0
@@ -38,7 +38,9 @@ def cuts(template: Template, found: Mapping[str, str]) -> bool:
     )
 
 
-def cuts_raised(template: Template, found: Mapping[str, str], starts: tuple[str, ...]) -> bool:
+def is_exception_cut(
+    template: Template, found: Mapping[str, str], starts: tuple[str, ...]
+) -> bool:
     """Whether a match cuts the message of an exception before its end.
 
     The message ends where the course's words follow: the template's, or one of `starts`.

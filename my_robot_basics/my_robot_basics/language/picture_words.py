@@ -21,12 +21,12 @@ CLAUSE = '; '
 _HAN = re.compile('[\u3400-\u9fff]+')
 
 
-def picture_in(language: str, text: str, locale: Path = LOCALE) -> str:
+def translate_alt_text(language: str, text: str, locale: Path = LOCALE) -> str:
     """Translate an alternative text line by line; what has no translation stays English."""
     return text if language == ENGLISH else _translated(locale, language, text)
 
 
-def in_one_line(language: str, text: str, locale: Path = LOCALE) -> str:
+def join_alt_text_lines(language: str, text: str, locale: Path = LOCALE) -> str:
     """Join the lines of an alternative text into one, for the attribute `alt`."""
     between = CLAUSE if language == ENGLISH else _joined(locale, language, CLAUSES)
     return between.join(text.split('\n'))

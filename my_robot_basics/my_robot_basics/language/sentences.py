@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 
-from my_robot_basics.language.cuts import cuts, cuts_raised, is_open
+from my_robot_basics.language.cuts import is_cut, is_exception_cut, is_open
 from my_robot_basics.language.english import PHRASE, is_raised, letters_in_names, letters_left
-from my_robot_basics.language.spaces import close_up
+from my_robot_basics.language.spaces import remove_spaces
 from my_robot_basics.language.templates import FEW_LETTERS, LETTERS, PLACE, Template
 
 SENTENCES, SPACED = '{sentence} {other}', '{one} {other}'
@@ -76,7 +76,7 @@ class Sentences:
             return text
         self._found, self._tries = {}, 0
         shown = self._best(text, 0)[1]
-        return text if shown == text else close_up(shown)
+        return text if shown == text else remove_spaces(shown)
 
     def parts(self, english: str, text: str) -> dict[str, str]:
         """Return the translated text of each of the template's places in `text`.
@@ -87,12 +87,15 @@ class Sentences:
         self._found, self._tries = {}, 0
         least, parts = 0.0, dict[str, str]()
         for found in islice(template.fits(text[:MOST_CHARACTERS]), MOST_SPLITS):
-            if self._cuts(template, found):
+            if self._is_cut(template, found):
                 continue
             best = {name: self._best(said, 0) for name, said in found.items()}
             left = sum(each for each, _ in best.values())
             if not parts or left < least:
-                least, parts = left, {name: close_up(shown) for name, (_, shown) in best.items()}
+                least, parts = (
+                    left,
+                    {name: remove_spaces(shown) for name, (_, shown) in best.items()},
+                )
         return parts
 
     def _best(self, text: str, deep: int) -> tuple[float, str]:
@@ -119,7 +122,7 @@ class Sentences:
                 self._tries += 1
                 if self._tries > MOST_TRIES:
                     return
-                if text not in found.values() and not self._cuts(template, found):
+                if text not in found.values() and not self._is_cut(template, found):
                     left, shown = self._put(template, found, deep)
                     if left < PHRASE or template.letters >= FEW_LETTERS or template.quoted:
                         yield left, shown
@@ -139,7 +142,7 @@ class Sentences:
                     if left < PHRASE or joined == SENTENCES:
                         yield left, shown
 
-    def _cuts(self, template: Template, found: Mapping[str, str]) -> bool:
+    def _is_cut(self, template: Template, found: Mapping[str, str]) -> bool:
         """Whether a match cuts a phrase, or puts a phrase in the place of a name or number."""
         for place, text in found.items():
             if _HOW_MANY.fullmatch(place) and not _NUMBER.fullmatch(text):
@@ -149,7 +152,7 @@ class Sentences:
                 place.endswith('name') and ': ' in text
             ):
                 return True
-        return cuts(template, found) or cuts_raised(template, found, self._starts)
+        return is_cut(template, found) or is_exception_cut(template, found, self._starts)
 
     def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[float, str]:
         """Fill a template's translation; return the letters that stay English, and the text."""

@@ -10,7 +10,7 @@ _ARTICLE = re.compile(rf'({QUOTED.pattern})|(?:(?<={_HAN})|(?<={_HAN} ))an? (?=[
 """An English article after Chinese words; or quoted text, which is kept."""
 
 
-def close_up(text: str) -> str:
+def remove_spaces(text: str) -> str:
     """Remove spaces between Chinese words, and the article of a name, such as 'an int'.
 
     Quoted text stays as it is.

@@ -15,7 +15,7 @@ from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.forks import ForkServer
-from my_robot_basics.validate.report_words import words_around
+from my_robot_basics.validate.report_words import front_end_texts
 
 if TYPE_CHECKING:
     from my_robot_basics.validate.report import Report
@@ -84,7 +84,7 @@ def _say_json(line: str) -> None:
 def _write_words(language: str) -> None:
     """Send JupyterLab's dialog the translations of its words; it has the English ones."""
     if language != ENGLISH:
-        _write({'words': words_around(language)})
+        _write({'words': front_end_texts(language)})
 
 
 def _write(message: dict) -> None:

@@ -8,7 +8,7 @@ import re
 from nbformat import NotebookNode
 
 from my_robot_basics.language.catalogues import ENGLISH
-from my_robot_basics.language.spaces import close_up
+from my_robot_basics.language.spaces import remove_spaces
 from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.cells import KEY, grade_id, graded_id, is_reset, role
 from my_robot_basics.validate.titles import title_of_check
@@ -21,7 +21,7 @@ def number_of(cells: list[NotebookNode], index: int) -> int:
     return cells[index].metadata.get(KEY, {}).get('number', index + 1)
 
 
-def in_words(text: str, notebook: NotebookNode, language: str = ENGLISH) -> str:
+def replace_cell_ids(text: str, notebook: NotebookNode, language: str = ENGLISH) -> str:
     """Replace cell ids in a sentence by numbers and purposes; unknown ids stay as they are.
 
     In a language other than English, the id stays, followed by the number.
@@ -32,7 +32,7 @@ def in_words(text: str, notebook: NotebookNode, language: str = ENGLISH) -> str:
         for each in dict.fromkeys(filter(places.__contains__, _NAMED.findall(text))):
             numbered = f'`{each}` (cell {number_of(notebook.cells, places[each])})'
             shown = shown.replace(f'`{each}`', in_language(language, numbered))
-        return close_up(shown)
+        return remove_spaces(shown)
 
     def name(found: re.Match[str]) -> str:
         index = places.get(found[1])

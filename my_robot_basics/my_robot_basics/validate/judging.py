@@ -20,7 +20,7 @@ from my_robot_basics.validate.overdue import judge_overdue
 from my_robot_basics.validate.plans import Plan, plan_for_names, plans
 from my_robot_basics.validate.rooms_interface import OpenRooms, R, Rooms
 from my_robot_basics.validate.second_look import Attempts
-from my_robot_basics.validate.verdict import Verdict, judge, ungraded
+from my_robot_basics.validate.verdict import Verdict, judge, leave_ungraded
 
 Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
 
@@ -52,7 +52,9 @@ async def judge_exercise(
             failure = error
             await looks.end(error)
     cells = notebook.cells
-    return JudgedExercise({}, {i: (ungraded(cells[i], str(failure)), []) for i in exercise.grades})
+    return JudgedExercise(
+        {}, {i: (leave_ungraded(cells[i], str(failure)), []) for i in exercise.grades}
+    )
 
 
 async def _try_plans(

@@ -16,7 +16,7 @@ from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.forks import ForkedKernel, ForkServer
 from my_robot_basics.validate.messages import Messages, OnInput
 from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.timeouts import finished, finished_in_grace
+from my_robot_basics.validate.timeouts import wait_for_end, wait_for_end_in_grace
 
 START_TIMEOUT_SEC = 60.0
 STOP_GRACE_SEC = 2.0
@@ -79,12 +79,12 @@ class LocalKernel:
 
         cell = self._messages.run(code, result, on_input=on_input, expressions=expressions)
         async with cell as done:
-            result.timed_out = not await finished(done, timeout_sec, self._is_alive, is_enough)
+            result.timed_out = not await wait_for_end(done, timeout_sec, self._is_alive, is_enough)
             if result.timed_out and not result.flooded and free_sec < math.inf:
                 result.cut_after_sec = watch.wall_sec()
             if result.timed_out and self.alive:
                 self._forked.interrupt()
-                if not await finished_in_grace(done, self._is_alive):
+                if not await wait_for_end_in_grace(done, self._is_alive):
                     await self._kill()
         if result.leaves:
             await self._kill()

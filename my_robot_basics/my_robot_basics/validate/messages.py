@@ -95,7 +95,7 @@ class Messages:
                 self._client.input(await on_input(str(content.get('prompt'))))
 
 
-def unpacked(raw: bytes) -> object:
+def parse_message_part(raw: bytes) -> object:
     """Parse a message part, which is JSON. Raises ValueError if it would take too much memory."""
     parts = raw.count(b'{') + raw.count(b'[')
     if parts > MAX_MESSAGE_PARTS:

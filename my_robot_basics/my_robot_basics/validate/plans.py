@@ -40,7 +40,7 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
         return
     missing = _missing(cells, exercise, setup)
     students = [i for i, c in enumerate(cells) if _is_students(c) and i != exercise.answer]
-    lending, _ = _lending(cells, students, missing)
+    lending, _ = _binding_cells(cells, students, missing)
     others = [i for i in students if i < _end(exercise) or i in lending]
     alone = {*setup, *own}
     if names_of(cells[exercise.answer].source).needs_more:
@@ -73,7 +73,7 @@ def plan_for_names(
     return Plan(chosen, why='with what binds a name that it needs', again=again)
 
 
-def _lending(
+def _binding_cells(
     cells: list[NotebookNode], indexes: Iterable[int], names: Iterable[str]
 ) -> tuple[set[int], set[str]]:
     """Return the cells that bind these names or names that such cells need; and all the names."""
@@ -159,7 +159,7 @@ def _cells_to_rerun(
     below = [i for i in chosen if i > exercise.run[-1]]
     there, lent = _bound(cells, above), _bound(cells, below)
     needed = names_of(cells[exercise.answer].source).needed
-    _, met = _lending(cells, chosen, {*names, *needed})
+    _, met = _binding_cells(cells, chosen, {*names, *needed})
     if any(names_of(cells[i].source).binds_more for i in below):
         lent |= met  # it may bind one of them
     return exercise.run if met & lent - there else ()

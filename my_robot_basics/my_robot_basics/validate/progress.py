@@ -90,7 +90,7 @@ class Progress:
         }
 
 
-def progress_on(page: Path, file: Path) -> Progress:
+def read_progress(page: Path, file: Path) -> Progress:
     """Return the progress in the lessons beside a contents page.
 
     Raises CourseError if `page` is not a contents page.
@@ -166,7 +166,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument('page', type=Path, help=argparse.SUPPRESS)  # the launcher gives it
     try:
-        progress = progress_on(parser.parse_args(arguments).page, default_path())
+        progress = read_progress(parser.parse_args(arguments).page, default_path())
     except CourseError as error:
         print(f'progress: {in_language_here(str(error))}', file=sys.stderr)
         return 2

@@ -7,7 +7,7 @@ from tornado import web
 
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.passed_answers import default_path
-from my_robot_basics.validate.progress import progress_on
+from my_robot_basics.validate.progress import read_progress
 from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/progress'
@@ -22,7 +22,7 @@ class ProgressHandler(APIHandler):
         assert self.serverapp is not None  # a handler has one
         page = path_below(self.serverapp, self.get_query_argument('path'))
         try:
-            told = await asyncio.to_thread(progress_on, page, default_path())
+            told = await asyncio.to_thread(read_progress, page, default_path())
         except CourseError as error:
             self.finish({'failed': str(error)})
         else:

@@ -8,7 +8,7 @@ from typing import Literal
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.sentences import SENTENCES
 from my_robot_basics.language.speaking import in_language, put
-from my_robot_basics.validate.report_words import words_around
+from my_robot_basics.validate.report_words import front_end_texts
 
 Outcome = Literal['passed', 'partial', 'failed', 'at grading', 'by hand', 'not checked']
 MARKS = {'passed': '✓', 'partial': '✗', 'failed': '✗'}
@@ -111,7 +111,7 @@ class Report:
     def as_data(self) -> dict:
         """Return all of it as JSON data."""
         told = {'summary': self.summary, 'passed': self.passed, 'marks': MARKS}
-        return {**asdict(self), **told, 'words': words_around(self.language)}
+        return {**asdict(self), **told, 'words': front_end_texts(self.language)}
 
     def _joined(self, one: str, other: str) -> str:
         return put(self.language, SENTENCES, sentence=one, other=other)

@@ -15,6 +15,6 @@ TO_SHOW += ('{number} point', '{number} points', '{earned} of {points}', '{score
 TO_SHOW += ('({points}; {more})', '({points})')
 
 
-def words_around(language: str) -> dict[str, str]:
+def front_end_texts(language: str) -> dict[str, str]:
     """Return the translation of each of these English texts."""
     return {text: in_language(language, text) for text in TO_SHOW}

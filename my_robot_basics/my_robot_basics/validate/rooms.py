@@ -27,7 +27,7 @@ from my_robot_basics.validate.questions import (
     reply_of,
 )
 from my_robot_basics.validate.titles import title_of_check
-from my_robot_basics.validate.together import together
+from my_robot_basics.validate.together import gather_or_cancel
 
 SETUP_TIMEOUT_SEC = 60.0
 SLOW_SEC = 1.0
@@ -66,7 +66,7 @@ class LocalRooms:
         self.say('starting two kernels')
         try:
             folder = self._open()
-            await together(
+            await gather_or_cancel(
                 self._prepare(self._student, STUDENT_COMES),
                 self._prepare(self._test, TEST_RECEIVES),
             )

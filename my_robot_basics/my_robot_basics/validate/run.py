@@ -9,7 +9,7 @@ from pathlib import Path
 from nbformat import NotebookNode
 
 from my_robot_basics.language.speaking import in_language, language_of, put
-from my_robot_basics.validate.cell_names import in_words
+from my_robot_basics.validate.cell_names import replace_cell_ids
 from my_robot_basics.validate.cells import grade_id, graded_id, role
 from my_robot_basics.validate.check_feedback import make_check, troubles_of
 from my_robot_basics.validate.exercises import Exercise, find_exercises
@@ -20,7 +20,7 @@ from my_robot_basics.validate.passed_answers import answer_of
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 from my_robot_basics.validate.rooms import LocalRooms, Say
 from my_robot_basics.validate.short_budget import ShortBudget
-from my_robot_basics.validate.together import together
+from my_robot_basics.validate.together import gather_or_cancel
 
 SIDE_BY_SIDE = 2
 """How many exercises run at a time: most of their time is waiting, except in endless loops."""
@@ -46,12 +46,12 @@ async def validate(
     files = [p for p in sorted(path.parent.glob('*.py')) if p.is_file()]
     make_rooms = partial(LocalRooms, files=files, server=server, beside=path.parent)
     run = _Run(lesson, path.parent, make_rooms, say, language)
-    parts = await together(*map(run.part, find_exercises(lesson.notebook)))
+    parts = await gather_or_cancel(*map(run.part, find_exercises(lesson.notebook)))
     named = {check.name for part in parts for check in part.checks}
     parts += [*_by_hand(lesson), *_without_exercise(lesson, named), *_missing(lesson)]
     report = Report(path.name, tuple(parts), lesson.notes, language)
     report = report.with_words(
-        lambda text: in_words(text, lesson.notebook, language),
+        lambda text: replace_cell_ids(text, lesson.notebook, language),
         title=partial(in_language, language),
     )
     tell(report)

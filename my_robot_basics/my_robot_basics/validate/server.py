@@ -19,7 +19,7 @@ from tornado import iostream, web
 
 from my_robot_basics.language.speaking import language_of
 from my_robot_basics.validate import progress_server
-from my_robot_basics.validate.report_words import words_around
+from my_robot_basics.validate.report_words import front_end_texts
 from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/validate'
@@ -91,7 +91,7 @@ def _words_for(path: Path) -> dict[str, str]:
     """Return the words in a notebook's language; {} if it can't be read: Validate reports that."""
     try:
         metadata = json.loads(path.read_bytes())['metadata']
-        return words_around(language_of(metadata))
+        return front_end_texts(language_of(metadata))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
 

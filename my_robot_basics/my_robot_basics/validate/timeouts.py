@@ -19,7 +19,7 @@ UsedSec = Callable[[], float | None]
 """The processor time of the code so far, in seconds; None if it is not measured."""
 
 
-async def finished(
+async def wait_for_end(
     done: asyncio.Future,
     timeout_sec: float,
     is_alive: IsAlive,
@@ -44,21 +44,21 @@ async def finished(
     return True
 
 
-async def finished_while_served(
+async def wait_for_end_by_cpu_time(
     done: asyncio.Future,
     timeout_sec: float,
     is_alive: IsAlive,
     is_enough: Callable[[], bool],
     used_sec: UsedSec,
 ) -> bool:
-    """Like `finished`, but with more time for running code that gets too little of a processor.
+    """Like `wait_for_end`, but running code that gets too little of a processor gets more time.
 
     The limit is `timeout_sec` of processor time, or of time with a free processor, and at most
     MOST_TIMES as long. Code that waits uses no processor and gets no more time.
     """
     watch, before_sec = pressure.Stopwatch(), used_sec()
     left_sec = timeout_sec
-    while not await finished(done, left_sec, is_alive, is_enough):
+    while not await wait_for_end(done, left_sec, is_alive, is_enough):
         now_sec, wall_sec = used_sec(), watch.wall_sec()
         if is_enough() or before_sec is None or now_sec is None:
             return False
@@ -69,10 +69,10 @@ async def finished_while_served(
     return True
 
 
-async def finished_in_grace(done: asyncio.Future, is_alive: IsAlive) -> bool:
+async def wait_for_end_in_grace(done: asyncio.Future, is_alive: IsAlive) -> bool:
     """Wait for an interrupted cell's end: INTERRUPT_GRACE_SEC of time with a free processor."""
     watch = pressure.Stopwatch()
-    while not await finished(done, LOOK_EVERY_SEC, is_alive):
+    while not await wait_for_end(done, LOOK_EVERY_SEC, is_alive):
         if watch.free_sec() >= INTERRUPT_GRACE_SEC or watch.wall_sec() >= INTERRUPT_MOST_SEC:
             return False
     return True

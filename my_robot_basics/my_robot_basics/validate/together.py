@@ -7,7 +7,7 @@ from typing import TypeVar
 T = TypeVar('T')
 
 
-async def together(*work: Awaitable[T]) -> list[T]:
+async def gather_or_cancel(*work: Awaitable[T]) -> list[T]:
     """Wait for all of them; if one fails, cancel the others and wait for their end."""
     tasks = [asyncio.ensure_future(each) for each in work]
     try:

@@ -19,7 +19,7 @@ _OWN_LINE = re.compile(
 """A frame of the notebook's own code in IPython's traceback: line number and code."""
 
 
-def trouble_in(name: str, run: CellRun) -> str | None:
+def describe_cell_error(name: str, run: CellRun) -> str | None:
     """Describe the error in one of the student's cells, with a hint if there is one; or None."""
     if run.cut_off:
         return f'{TROUBLE}`{name}` {CUT_OFF}'

@@ -12,7 +12,7 @@ from my_robot_basics.validate.cells import KEY, graded_id, role
 from my_robot_basics.validate.errors import RoomFailure
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.second_look import DISTURBED, STARVED
-from my_robot_basics.validate.trouble import trouble_in
+from my_robot_basics.validate.trouble import describe_cell_error
 
 Outcome = Literal['passed', 'partial', 'failed', 'ungraded', 'manual']
 SCORED = ('passed', 'partial', 'failed')
@@ -72,7 +72,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     details = hidden.details_in(run.outputs)
     if run.error.ename == 'AssertionError' and hidden.has_started(run.outputs):
         reason, details = _in_words(reason, cell), reason
-    notes += tuple(sentence for each in own if (sentence := trouble_in(*each)))
+    notes += tuple(sentence for each in own if (sentence := describe_cell_error(*each)))
     if run.ending and hidden.has_started(run.outputs):  # a signal's number may be a hidden input
         notes += ('in the part checked at grading, what you started has ended',)
         details = '; '.join(filter(None, (details, run.ending)))
@@ -89,7 +89,7 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     return Verdict(name, 'partial', points, reason, notes, details, earned, beyond, hint)
 
 
-def ungraded(cell: NotebookNode, why: str) -> Verdict:
+def leave_ungraded(cell: NotebookNode, why: str) -> Verdict:
     """Leave a grade cell to a person, because the grader itself failed."""
     reason = UNGRADED + why
     return Verdict(
@@ -100,7 +100,7 @@ def ungraded(cell: NotebookNode, why: str) -> Verdict:
     )
 
 
-def refuse(notebook: NotebookNode, problem: str) -> list[Verdict]:
+def fail_all_checks(notebook: NotebookNode, problem: str) -> list[Verdict]:
     """Fail every grade cell of a notebook that could not be read."""
     verdicts = []
     for cell in notebook.cells:
@@ -156,7 +156,7 @@ def _in_words(reason: str, cell: NotebookNode) -> str:
 
 
 def _who_ended_it(own: list[tuple[str, CellRun]]) -> str:
-    causes = [sentence for each in own if (sentence := trouble_in(*each))]
+    causes = [sentence for each in own if (sentence := describe_cell_error(*each))]
     return causes[0] if causes else 'something that your code left running ended it'
 
 
