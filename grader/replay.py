@@ -61,7 +61,7 @@ def replay(
             stored = verdicts(course, each.student_id, each.assignment)
             for cell in result.result().notebook.cells:
                 if role(cell) == 'grade' and cell.cell_type == 'code':
-                    yield _compared(grade_id(cell) or '', cell.metadata[KEY], stored)
+                    yield _compare_verdicts(grade_id(cell) or '', cell.metadata[KEY], stored)
 
 
 def recorded_seed(course: Course, found: SubmissionFolder) -> str:
@@ -89,17 +89,17 @@ def _own_seed(course: Course, found: SubmissionFolder) -> str:
     return seeds(course, found.assignment)(submission)
 
 
-def _compared(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[str, bool]:
+def _compare_verdicts(name: str, now: Mapping, stored: Mapping[str, Mapping]) -> tuple[str, bool]:
     then = stored.get(name, {})
     same = all(
         (now.get(key) or None) == (then.get(key) or None)
         for key in ('outcome', 'reason', 'earned')
     )
-    line = f'  {name}  {_in_words(now)}'
-    return (f'{line}  as stored', True) if same else (f'{line}  STORED: {_in_words(then)}', False)
+    line = f'  {name}  {_describe(now)}'
+    return (f'{line}  as stored', True) if same else (f'{line}  STORED: {_describe(then)}', False)
 
 
-def _in_words(verdict: Mapping) -> str:
+def _describe(verdict: Mapping) -> str:
     said = verdict.get('outcome') or 'nothing'
     reason = verdict.get('details') or verdict.get('reason')
     return printable(f'{said}: {reason}' if reason else said)

@@ -11,7 +11,7 @@ import nbformat
 import pytest
 from IPython.core.inputtransformer2 import TransformerManager
 
-from grader.authoring.release_passes import broken
+from grader.authoring.release_passes import uncomment_broken_lines
 
 ROOT = Path(__file__).parents[1]
 SOURCES = sorted(ROOT.glob('solutions/*/*.ipynb'))
@@ -350,7 +350,7 @@ def test_no_comment_points_at_the_line_that_is_to_be_fixed(lesson):
     """Hints are above the node; none is at the broken line or next to it."""
     for cell in code_cells(lesson):
         if '### BROKEN' in cell.source:
-            released = broken(as_released(cell.source))
+            released = uncomment_broken_lines(as_released(cell.source))
             first = released[: released.index('class ')].splitlines()
             assert all(line.startswith('# ') for line in first), cell.id
             assert '#' not in released[released.index('class ') :], cell.id
@@ -359,7 +359,7 @@ def test_no_comment_points_at_the_line_that_is_to_be_fixed(lesson):
 def test_an_untouched_answer_is_valid_python_with_hints(lesson):
     for cell in code_cells(lesson):
         if marks(cell).get('solution'):
-            released = broken(as_released(cell.source))
+            released = uncomment_broken_lines(as_released(cell.source))
             ast.parse(released)
             assert '# 1. ' in released, cell.id
             is_to_be_fixed = '### BROKEN' in cell.source

@@ -14,7 +14,7 @@ from grader.authoring.hidden_points import MarkHidden
 from grader.authoring.leaks import leaks_of
 from grader.authoring.markers import marker_faults
 from grader.authoring.release import release, stale_or_leaking
-from grader.authoring.release_passes import broken
+from grader.authoring.release_passes import uncomment_broken_lines
 from grader.common.errors import CourseError
 from grader.course import Course
 
@@ -159,7 +159,7 @@ def test_an_answer_with_broken_lines_is_released_with_them_in_place_of_the_solut
 )
 def test_broken_lines_that_do_not_follow_a_solution_are_refused(source):
     with pytest.raises(CourseError, match='right after ### END SOLUTION'):
-        broken(source)
+        uncomment_broken_lines(source)
 
 
 def test_a_failed_release_leaves_the_former_release_unchanged(course):

@@ -74,7 +74,7 @@ class BriefGraph(Graph):
 
 @pytest.fixture
 def in_this_process(monkeypatch):
-    monkeypatch.setattr(stopping, 'watch', lambda: None)
+    monkeypatch.setattr(stopping, 'set_handlers', lambda: None)
     monkeypatch.setattr(stopping, 'only_record_signals', lambda: None)
     for command, verb in VERBS:
         name = f'{command}_{verb}'.rstrip('_')

@@ -52,7 +52,7 @@ def test_comments_are_shown_on_request():
 
 @pytest.mark.parametrize('name', interfaces.names('msg') + interfaces.names('srv'))
 def test_every_interface_can_be_shown(name, capsys, monkeypatch):
-    monkeypatch.setattr(stopping, 'watch', lambda: None)
+    monkeypatch.setattr(stopping, 'set_handlers', lambda: None)
     assert main.main(['interface', 'show', name]) is None
     assert capsys.readouterr().err == ''
 

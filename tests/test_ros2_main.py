@@ -47,7 +47,7 @@ def test_a_real_ros2cli_receives_all_arguments_unchanged(tmp_path):
 def test_a_ros2cli_command_that_the_course_lacks_is_named_with_its_package(
     words, name, capsys, monkeypatch
 ):
-    monkeypatch.setattr(stopping, 'watch', lambda: None)
+    monkeypatch.setattr(stopping, 'set_handlers', lambda: None)
     assert main.main(list(words)) == 2
     printed = capsys.readouterr()
     assert printed.out == ''

@@ -4,7 +4,7 @@ import pytest
 from my_robot_basics.language.sentences import MOST_CHARACTERS, Sentences
 from my_robot_basics.language.templates import Template
 
-from grader.authoring.code_messages import described_in, messages_in
+from grader.authoring.code_messages import alt_text_messages_in, messages_in
 
 CODE = '''
 """Each value is doubled
@@ -64,7 +64,7 @@ def test_sentences_in_code_become_templates_with_named_placeholders():
 
 def test_only_marked_words_of_a_picture_are_collected():
     marked = "gettext_noop('graph') + f': {a}' + gettext_noop(f'{len(a)} of {b:g} ms')"
-    assert described_in(marked) == ['graph', '{len} of {b} ms']
+    assert alt_text_messages_in(marked) == ['graph', '{len} of {b} ms']
 
 
 TEMPLATES = {

@@ -10,14 +10,14 @@ from my_robot_basics.language.speaking import PARTS
 
 from grader.authoring.blocks import (
     split_blocks,
-    translatable,
+    translatable_blocks,
     translatable_html,
     translate_blocks,
     translate_html,
 )
 from grader.authoring.editions import editions, is_translated
 from grader.authoring.translatable import MODULES, parts_of
-from grader.authoring.translate import lines, update
+from grader.authoring.translate import report_lines, update_catalogues
 from grader.authoring.translation_faults import faults_of, read_glossary, unknown_terms
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
@@ -50,7 +50,7 @@ def test_a_block_ends_at_a_blank_line_and_each_table_row_is_a_block():
     assert split_blocks(text)[1::2] == [
         *('One\ntwo.', '| a | b |', '|---|---|', '| `c` | 3 |', 'next', '```\nx\n\ny\n```\nend'),
     ]
-    assert translatable(
+    assert translatable_blocks(
         '| a | be |\n|---|---|\n| `c` | 3 |\n\n`code`\n\n$alpha$\n\n## Exercise: `a`'
     ) == [
         '| a | be |',
@@ -108,9 +108,9 @@ def course(tmp_path):
     course = make_course(tmp_path)
     write_opening(course, OPENING)
     (course.root / 'locale/zh_CN/LC_MESSAGES').mkdir(parents=True)
-    update(course)
+    update_catalogues(course)
     translate(course, CHINESE)
-    update(course)
+    update_catalogues(course)
     return course
 
 
@@ -140,14 +140,14 @@ def test_translations_in_a_catalogue_are_read_back(course):
     assert languages(locale) == ['zh_CN']
     assert read_translations(locale, 'zh_CN', TOY) == CHINESE
     assert read_translations(locale, 'zh_CN', 'no such part') == {}
-    report = of_the_toy(update(course))
+    report = of_the_toy(update_catalogues(course))
     assert (report.texts, report.missing, report.outdated) == (4, (), ())
 
 
 def test_an_update_without_a_change_changes_no_file(course):
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
     before = path.read_bytes()
-    update(course)
+    update_catalogues(course)
     assert path.read_bytes() == before
     assert b'Date' not in before
 
@@ -155,16 +155,16 @@ def test_an_update_without_a_change_changes_no_file(course):
 def test_a_second_update_of_a_new_catalogue_changes_nothing(course):
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
     path.unlink()
-    update(course)
+    update_catalogues(course)
     before = path.read_bytes()
     assert before.startswith(b'msgid ""')
-    update(course)
+    update_catalogues(course)
     assert path.read_bytes() == before
 
 
 def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
     write_opening(course, OPENING.replace('two ways', 'three ways'))
-    report = of_the_toy(update(course))
+    report = of_the_toy(update_catalogues(course))
     assert report.outdated == (('title', 'You double numbers. There are three ways.'),)
     assert report.missing == ()
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
@@ -173,14 +173,14 @@ def test_the_edit_of_one_sentence_puts_one_block_out_of_date(course):
     assert '把数翻倍' in text
     (edition,) = editions(course)
     assert edition.text(TOY, 'You double numbers. There are three ways.').startswith('You double')
-    said = '\n'.join(lines([report]))
+    said = '\n'.join(report_lines([report]))
     assert f'zh_CN  {TOY}: 3 of 4' in said
     assert 'out of date: title: You double numbers. There are three ways.' in said
 
 
 def test_a_part_that_is_not_begun_is_named_with_its_file(course):
     catalogue_path(course.root / 'locale', 'zh_CN', TOY).unlink()
-    assert [*lines([of_the_toy(update(course))])] == [
+    assert [*report_lines([of_the_toy(update_catalogues(course))])] == [
         f'zh_CN  {TOY}: 0 of 4',
         f'    not begun: locale/zh_CN/LC_MESSAGES/{TOY}.po has all texts',
     ]
@@ -188,11 +188,11 @@ def test_a_part_that_is_not_begun_is_named_with_its_file(course):
 
 def test_the_former_english_text_is_removed_with_the_mark_fuzzy(course):
     write_opening(course, OPENING.replace('two ways', 'three ways'))
-    update(course)
+    update_catalogues(course)
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
     text = path.read_text(encoding='utf-8')
     path.write_text(text.replace('#, fuzzy\n', ''), encoding='utf-8')
-    assert of_the_toy(update(course)).outdated == ()
+    assert of_the_toy(update_catalogues(course)).outdated == ()
     assert 'two ways' in text
     assert 'two ways' not in path.read_text(encoding='utf-8')
 
@@ -213,7 +213,7 @@ def test_only_the_edited_block_is_english_before_the_catalogue_is_updated(course
 
 def test_a_deleted_block_is_removed_from_the_catalogue(course):
     write_opening(course, OPENING.replace('You double numbers. There are two ways.\n\n', ''))
-    assert of_the_toy(update(course)).texts == 3
+    assert of_the_toy(update_catalogues(course)).texts == 3
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
     assert '翻倍' not in path.read_text(encoding='utf-8')
 
@@ -222,7 +222,7 @@ def test_a_damaged_catalogue_is_named(course):
     path = catalogue_path(course.root / 'locale', 'zh_CN', TOY)
     path.write_text('msgid "A"\nmsgstr "B\nno quotes\n', encoding='utf-8')
     with pytest.raises(CourseError, match=rf'{TOY}\.po cannot be read: '):
-        update(course)
+        update_catalogues(course)
     (edition,) = editions(course)
     with pytest.raises(CourseError, match=rf'{TOY}\.po cannot be read: '):
         edition.translations(TOY)
@@ -231,7 +231,7 @@ def test_a_damaged_catalogue_is_named(course):
 def test_a_catalogue_that_belongs_to_no_lesson_is_named(course):
     catalogue_path(course.root / 'locale', 'zh_CN', 'gone').write_text('', encoding='utf-8')
     with pytest.raises(CourseError, match=r'gone\.po belongs to no lesson'):
-        update(course)
+        update_catalogues(course)
 
 
 def test_sentences_for_one_and_for_many_do_not_differ_by_an_inserted_verb():
@@ -317,7 +317,7 @@ def updated(tmp_path_factory):
         if each.name not in ('locale', 'gradebook'):
             (root / each.name).symlink_to(each)
     shutil.copytree(ROOT / 'locale', root / 'locale')
-    return root, update(Course.at(root))
+    return root, update_catalogues(Course.at(root))
 
 
 @pytest.mark.timeout(120)

@@ -91,7 +91,7 @@ def without_mark_scheme(text: str) -> str:
     return _MARK_SCHEME.sub('', text)
 
 
-def translatable(text: str) -> list[str]:
+def translatable_blocks(text: str) -> list[str]:
     """Return the blocks of a text that have words, in order."""
     return [block for block in split_blocks(text)[1::2] if has_words(block)]
 

@@ -15,7 +15,7 @@ from grader.authoring.index import INDEX, copied_pages
 from grader.authoring.leaks import files_in, leaks_beside
 from grader.authoring.quizzes import quizzes
 from grader.authoring.release import stale_or_leaking
-from grader.authoring.reproducible_zip import zipped
+from grader.authoring.reproducible_zip import make_zip
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
@@ -86,7 +86,7 @@ def bundle(course: Course, target: Path) -> Bundle:
     faults += leaks_beside(course, {n: c for n, c in files.items() if not _is_lesson(course, n)})
     if faults:
         raise CourseError('no bundle was made: ' + '; '.join(faults))
-    packed = zipped(files, EXECUTABLE)
+    packed = make_zip(files, EXECUTABLE)
     _check_target(target)  # checked again: reading may have created gradebook/
     target.parent.mkdir(parents=True, exist_ok=True)
     write_whole(target, packed)

@@ -50,7 +50,7 @@ def messages_in(source: str, *, title: bool = False) -> list[str]:
     return list(dict.fromkeys([*found, *words]))
 
 
-def described_in(source: str) -> list[str]:
+def alt_text_messages_in(source: str) -> list[str]:
     """Return the templates that a module marks by gettext_noop: parts of alternative texts."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
     marked = [call.args[0] for call in calls if _called(call) == 'gettext_noop']
@@ -58,7 +58,7 @@ def described_in(source: str) -> list[str]:
     return [_template(text)[0] for text in marked]
 
 
-def marked_in(source: str, callers: Collection[str]) -> list[str]:
+def texts_passed_to(source: str, callers: Collection[str]) -> list[str]:
     """Return the texts that a module passes to a function of one of these names, in order."""
     calls = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
     first = [call.args[0] for call in calls if call.args and _called(call) in callers]

@@ -53,7 +53,7 @@ def progress_row(name: str, lesson: NotebookNode) -> dict:
     return {'lesson': name, 'title': title_of(lesson), 'exercises': exercises}
 
 
-def one_behind_the_other(sentences: Iterable[str]) -> str:
+def join_sentences(sentences: Iterable[str]) -> str:
     """Join sentences to a paragraph: after a Chinese full stop there is no space."""
     return ' '.join(sentences).replace('。 ', '。')
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import nbformat
 
-from grader.authoring.blocks import translatable, translatable_html, translate_html
+from grader.authoring.blocks import translatable_blocks, translatable_html, translate_html
 from grader.authoring.editions import Edition, editions, is_translated
 from grader.authoring.index import write_pages
 from grader.common.files import write_whole
@@ -46,7 +46,9 @@ def _write_lessons(
         english = nbformat.read(built / name / f'{name}.ipynb', as_version=4)
         translated = edition.notebook(name, english)
         write_whole(folder / f'{name}.ipynb', nbformat.writes(translated) + '\n')
-        blocks = [b for c in english.cells if is_translated(c) for b in translatable(c.source)]
+        blocks = [
+            b for c in english.cells if is_translated(c) for b in translatable_blocks(c.source)
+        ]
         for page in sorted(folder.glob('*.html')):
             text = page.read_text(encoding='utf-8')
             blocks += translatable_html(text)

@@ -11,8 +11,8 @@ from nbformat import NotebookNode, from_dict, v4, write
 
 from grader.authoring.contents_rows import (
     JOINED,
+    join_sentences,
     minutes_of,
-    one_behind_the_other,
     points_of,
     progress_row,
     row,
@@ -94,7 +94,7 @@ def make_index(course: Course, edition: Edition | None = None) -> NotebookNode:
         *(line for lines in rows.values() for line in lines),
         f'| **{put(TOTAL)}** | | | **{minutes:g}** | | **{total:g}** |',
     ]
-    pages = one_behind_the_other(put(TO_THE_PAGES[page]) for page in copied_pages(course))
+    pages = join_sentences(put(TO_THE_PAGES[page]) for page in copied_pages(course))
     about = f'{edition.text(PART, HOW_IT_WORKS)}\n{pages}'.strip()
     welcome = [edition.text(PART, WELCOME), *_to_other_editions(course, edition)]
     texts = {'contents': '\n'.join([*welcome, *table]), 'how_it_works': about}

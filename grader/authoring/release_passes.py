@@ -75,11 +75,11 @@ class ReleaseBroken(Preprocessor):
         self, cell: NotebookNode, resources: dict, index: int
     ) -> tuple[NotebookNode, dict]:
         """Uncomment the broken lines of one cell. Raises CourseError if they follow no answer."""
-        cell.source = broken(cell.source)
+        cell.source = uncomment_broken_lines(cell.source)
         return cell, resources
 
 
-def broken(cleared: str) -> str:
+def uncomment_broken_lines(cleared: str) -> str:
     """Return an answer cell's source, cleared of its answer, with its broken lines as code.
 
     Raises CourseError if such lines are anywhere but right after an answer.

@@ -11,7 +11,7 @@ DAYS = 28
 """How many days the files' times are spread over; a zip stores times in steps of 2 s."""
 
 
-def zipped(files: dict[str, bytes], executable: Collection[str]) -> bytes:
+def make_zip(files: dict[str, bytes], executable: Collection[str]) -> bytes:
     """Return a zip of files by their paths; those in `executable` get the permission to be run."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, 'w') as box:

@@ -11,8 +11,8 @@ from my_robot_basics.validate.cells import role
 from nbformat import NotebookNode
 
 from grader.authoring import index
-from grader.authoring.blocks import translatable, translatable_html, without_mark_scheme
-from grader.authoring.code_messages import described_in, marked_in, messages_in
+from grader.authoring.blocks import translatable_blocks, translatable_html, without_mark_scheme
+from grader.authoring.code_messages import alt_text_messages_in, messages_in, texts_passed_to
 from grader.authoring.editions import is_translated
 from grader.authoring.quizzes import quizzes
 from grader.course import Course
@@ -85,7 +85,7 @@ def parts_of(course: Course) -> dict[str, Texts]:
     for page in (*index.copied_pages(course), STUDENTS):
         path = course.root / 'solutions' / page
         if path.is_file():
-            blocks = translatable(path.read_text(encoding='utf-8'))
+            blocks = translatable_blocks(path.read_text(encoding='utf-8'))
             parts[Path(page).stem] = {block: [page] for block in blocks}
     parts |= {name: texts for name, texts in _software(course).items() if texts}
     return parts
@@ -124,7 +124,7 @@ def _pictures(root: Path) -> Texts:
     texts: Texts = {}
     for package in DRAWN:
         for path in sorted(root.glob(f'my_robot_basics/my_robot_basics/{package}/*.py')):
-            found = described_in(path.read_text(encoding='utf-8'))
+            found = alt_text_messages_in(path.read_text(encoding='utf-8'))
             _add(texts, found, str(path.relative_to(root)))
     return texts
 
@@ -133,7 +133,7 @@ def _charts(root: Path) -> Texts:
     """Return the texts of the report's charts."""
     texts: Texts = {}
     for path in sorted(root.glob(CHARTS)):
-        _add(texts, marked_in(path.read_text(encoding='utf-8'), _SAY), path.name)
+        _add(texts, texts_passed_to(path.read_text(encoding='utf-8'), _SAY), path.name)
     return texts
 
 
@@ -155,7 +155,7 @@ def _launcher(root: Path) -> Texts:
         helps = (re.split(r'  +', row.rstrip())[-1] for row in rows if not row.startswith('#'))
         _add(texts, helps, path.name)
     for path in sorted(root.glob('launcher/*.py')):
-        found = marked_in(path.read_text(encoding='utf-8'), _SAY)
+        found = texts_passed_to(path.read_text(encoding='utf-8'), _SAY)
         _add(texts, found, str(path.relative_to(root)))
     return texts
 
@@ -184,10 +184,10 @@ def _notebook(notebook: NotebookNode) -> Texts:
     texts: Texts = {}
     for cell in notebook.cells:
         if is_translated(cell):
-            _add(texts, translatable(without_mark_scheme(cell.source)), cell.id)
+            _add(texts, translatable_blocks(without_mark_scheme(cell.source)), cell.id)
     return texts
 
 
 def _index(course: Course) -> Iterator[str]:
     for text in index.TEXTS:
-        yield from translatable(text)
+        yield from translatable_blocks(text)

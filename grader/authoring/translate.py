@@ -37,7 +37,7 @@ class PartReport:
     """The same for a text whose translation is of a former English, or marked fuzzy."""
 
 
-def update(course: Course) -> list[PartReport]:
+def update_catalogues(course: Course) -> list[PartReport]:
     """Update the catalogues of each language from the English texts; return what is left to do.
 
     Translations stay; those whose English no longer exists are removed. Raises CourseError if a
@@ -101,7 +101,7 @@ def _report(language: str, part: str, texts: Texts, catalogue: Catalog) -> PartR
     return PartReport(language, part, len(texts), tuple(left[False]), tuple(left[True]))
 
 
-def lines(reports: list[PartReport], *, most: int = 10) -> Iterator[str]:
+def report_lines(reports: list[PartReport], *, most: int = 10) -> Iterator[str]:
     """Yield the lines to print: one for each part, and the texts that are left, shortened."""
     if not reports:
         yield 'No other language: make a folder such as locale/zh_CN/LC_MESSAGES/'

@@ -47,7 +47,7 @@ def demo(samples: Path = SAMPLES, *, root: Path = ROOT) -> bool:
     graded = grade_all(course, submissions, trust_students=True)
     run = Run(datetime.now().astimezone())
     rows = list(print_rows(graded, submissions, expected=expected))
-    surprises = [row for row in rows if not _as_named(course, row, expected[row.student_id])]
+    surprises = [row for row in rows if not _is_as_expected(course, row, expected[row.student_id])]
     pages = write_feedback(course)
     for row in surprises:
         print(f'NOT AS NAMED: {row.student_id}: {row.reason or "no points are missing"}')
@@ -85,7 +85,7 @@ def _parts(sample: Path, course: Course) -> tuple[str, str, str]:
     )
 
 
-def _as_named(course: Course, row: SubmissionOutcome, outcome: str) -> bool:
+def _is_as_expected(course: Course, row: SubmissionOutcome, outcome: str) -> bool:
     said = verdicts(course, row.student_id, row.assignment).values()
     outcomes = [verdict['outcome'] for verdict in said if 'outcome' in verdict]
     return row.stored is not None and OUTCOMES[outcome](outcomes)

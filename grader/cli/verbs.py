@@ -49,7 +49,7 @@ def run_translate(course: 'Course', asked: argparse.Namespace) -> int:
     """Update locale/ from the English texts, and list what is to be translated."""
     from grader.authoring import translate
 
-    for line in translate.lines(translate.update(course)):
+    for line in translate.report_lines(translate.update_catalogues(course)):
         print(line)
     return 0
 

@@ -136,7 +136,7 @@ async def execute_exercises(
 
 async def _execute(work: _NotebookRun) -> list[Verdict]:
     verdicts = []
-    with _counted() as others:
+    with _count_running() as others:
         places = asyncio.Semaphore(1 if others else SIDE_BY_SIDE)
         exercises = find_exercises(work.notebook)
         in_order = await gather_or_cancel(
@@ -158,7 +158,7 @@ async def _judge(
 
 
 @contextmanager
-def _counted() -> Iterator[int]:
+def _count_running() -> Iterator[int]:
     """Count a notebook while it runs; yield how many others this process was running before."""
     global _under_way
     _under_way += 1

@@ -102,7 +102,7 @@ def read_result(text: str, asked: NotebookNode, *, seed: str) -> tuple[NotebookN
     try:
         notebook = nbformat.from_dict(found['notebook'])
         _expect_valid(notebook, asked)
-        same = _unchanged(notebook) == _unchanged(asked)
+        same = _fixed_parts(notebook) == _fixed_parts(asked)
     except (nbformat.ValidationError, AttributeError, RecursionError) as error:
         raise TaskFailed(f'the worker returned a damaged notebook: {_first_line(error)}') from None
     if not same:
@@ -140,7 +140,7 @@ def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
     points_kind = ['execute_result'] if is_partial else []
     results = [output for output in cell.outputs if output.output_type in points_kind]
     others = [out for out in cell.outputs if out.output_type not in ('error', *points_kind)]
-    if not all(_tells_only(output) for output in others):
+    if not all(_is_text_or_picture(output) for output in others):
         yield f'`{name}`: it has an output of a kind that no check makes'
         return
     wanted = [verdict['reason']] if verdict['outcome'] == 'failed' else []
@@ -156,14 +156,14 @@ def _problems_of_check(cell: NotebookNode) -> Iterator[str]:
         yield f'`{name}`: nbgrader would compute another score from its outputs'
 
 
-def _tells_only(output: NotebookNode) -> bool:
+def _is_text_or_picture(output: NotebookNode) -> bool:
     """Whether an output is text or a picture: nbgrader reads a cell's result as points."""
     if output.output_type == 'stream':
         return output.name == 'stdout'
     return output.output_type == 'display_data'
 
 
-def _unchanged(notebook: NotebookNode) -> list[Any]:
+def _fixed_parts(notebook: NotebookNode) -> list[Any]:
     """Return the parts of a notebook that a run does not change."""
     found: list[Any] = [{k: v for k, v in notebook.metadata.items() if k != KEY}]
     found += [notebook.nbformat, notebook.nbformat_minor]

@@ -23,7 +23,7 @@ def main(argv: list[str] | None = None) -> int | str | None:
         from ros2cli.cli import main as real_main
 
         return real_main(argv=argv)
-    stopping.watch()
+    stopping.set_handlers()
     sys.stdout = sys.stdout or open(os.devnull, 'w')  # noqa: SIM115 - where a shell closed it
     words = sys.argv[1:] if argv is None else argv
     if sentence := ros2cli_only_message(words):
@@ -148,7 +148,7 @@ def _run(args: argparse.Namespace) -> int | str | None:
     except RuntimeError as error:  # a CommandError, or an error of DDS that rclpy reports
         status = str(error)
     sys.stdout.flush()
-    stopping.finish()
+    stopping.cancel_alarm()
     return status
 
 

@@ -18,7 +18,7 @@ _cleans_up = False
 _noted = 0
 
 
-def watch() -> None:
+def set_handlers() -> None:
     """Set the signal handlers, also if a shell ignores the signals (`ros2 … &` in a script).
 
     An ignored SIGHUP, which a closing terminal sends, stays ignored: `nohup` relies on this.
@@ -55,7 +55,7 @@ def resume_after(stopped: Stopped) -> bool:
     return True
 
 
-def finish() -> None:
+def cancel_alarm() -> None:
     """Cancel the alarm after the cleanup: the end of Python itself may take longer."""
     signal.setitimer(signal.ITIMER_REAL, 0.0)
 
