@@ -20,7 +20,7 @@ from grader.judging.execute import Execution
 from grader.notebook.restore import KEY
 from grader.serving.exchange import feedback_folder
 from grader.serving.queue import FAILED, GRADED, REFUSED, WAITING, Arrival
-from grader.serving.queue_file import queue_to_read
+from grader.serving.queue_file import open_queue_to_read
 from grader.serving.serve import serve
 from grader.serving.status import write_status_page
 from grader.storage import reuse
@@ -69,7 +69,7 @@ def put_there(course: Course, inbound: Path, student: str) -> Path:
 
 def arrivals(course: Course) -> list[Arrival]:
     """Return the arrivals that were not replaced."""
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         return queue.find(WAITING, GRADED, REFUSED, FAILED)
 
 

@@ -11,7 +11,7 @@ from sqlalchemy.exc import OperationalError
 
 from grader.__main__ import main
 from grader.export.totals import write_totals
-from grader.serving import desk
+from grader.serving import steps
 from grader.serving.queue import GRADED
 from grader.storage.backups import back_up
 
@@ -211,14 +211,14 @@ def test_a_submission_that_arrives_while_the_server_is_away_is_graded_later(
     serving_desk.hand_in(course, inbound, 'ada', serving_desk.WRONG)
     serving_desk.serve_here(course, inbound)
     serving_desk.hand_in(course, inbound, 'ada', serving_desk.RIGHT, number=2)
-    put = desk.put_in_place
+    put = steps.put_in_place
 
     def when_it_is_away(*given):
         postgresql.stop()
         return put(*given)
 
     with monkeypatch.context() as patch:
-        patch.setattr(desk, 'put_in_place', when_it_is_away)
+        patch.setattr(steps, 'put_in_place', when_it_is_away)
         with pytest.raises(OperationalError):
             serving_desk.serve_here(course, inbound)
     postgresql.start()

@@ -16,17 +16,16 @@ from sqlalchemy.exc import DataError, OperationalError
 from grader.collect.archive_entries import MAX_PARTS
 from grader.common.errors import GradebookError
 from grader.common.text import printable
-from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
-from grader.serving import reception
+from grader.serving import reception, steps
 from grader.serving import rounds as rounds_module
 from grader.serving import serve as serve_module
-from grader.serving.desk import Desk
 from grader.serving.inbound import new_entries
 from grader.serving.queue import FAILED, GRADED, REFUSED, Arrival
-from grader.serving.queue_file import opened_queue
-from grader.serving.reception import look
+from grader.serving.queue_file import open_queue
+from grader.serving.reception import take_in_new_entries
 from grader.serving.status import write_status_page
+from grader.serving.steps import ServingState
 
 
 @pytest.fixture
@@ -231,7 +230,7 @@ def test_an_unexpected_error_after_intake_affects_only_one_submission(
     error, state, reason = STEPS[step]
     for student in ('mallory', 'zoe'):
         put_there(course, inbound, student).joinpath('submission_secret.txt').write_text('aa')
-    does, failed = getattr(desk_module, step), []
+    does, failed = getattr(steps, step), []
 
     def fails_once(*given, **named):
         if failed:
@@ -239,7 +238,7 @@ def test_an_unexpected_error_after_intake_affects_only_one_submission(
         failed.append(given)
         raise error
 
-    monkeypatch.setattr(desk_module, step, fails_once)
+    monkeypatch.setattr(steps, step, fails_once)
     monkeypatch.setattr(serving_desk, 'feedback_folder', lambda inbound: inbound.parent / 'pages')
     said = serve_here(course, inbound)
     found = {each.student_id: (each.state, each.reason) for each in arrivals(course)}
@@ -264,7 +263,7 @@ def test_a_submission_is_refused_for_bad_data_but_not_for_a_database_outage(
         raise error('SELECT 1', {}, Exception('the server is gone'))
 
     with monkeypatch.context() as patch:
-        patch.setattr(desk_module, 'put_in_place', fails)
+        patch.setattr(steps, 'put_in_place', fails)
         if error is OperationalError:
             with pytest.raises(OperationalError):
                 serve_here(course, inbound)
@@ -283,11 +282,15 @@ def test_the_next_process_keeps_replaced_submissions_that_were_not_yet_kept(
         (inbound / f'zoe_{TOY}.ipynb').write_text(
             nbformat.writes(answered(course, f'# {number}\n{RIGHT}'))
         )
-        with opened_queue(course.gradebook, inbound) as queue:
-            look(Desk(course, queue, None, inbound, None, print, queue.seen(), exporter=None))
+        with open_queue(course.gradebook, inbound) as queue:
+            take_in_new_entries(
+                ServingState(
+                    course, queue, None, inbound, None, print, queue.seen(), exporter=None
+                )
+            )
         time.sleep(0.02)
     with monkeypatch.context() as patch:
-        patch.setattr(serve_module, 'keep_replaced', lambda desk: False)
+        patch.setattr(serve_module, 'store_replaced', lambda serving: False)
         serve_here(course, inbound)
     assert not course.folder('submitted_before', 'zoe', TOY).exists()
     said = serve_here(course, inbound)
@@ -305,7 +308,7 @@ def test_a_full_disk_ends_serving_and_the_next_process_goes_on(
         raise OSError(28, 'No space left on device')
 
     with monkeypatch.context() as patch:
-        patch.setattr(desk_module, step, full)
+        patch.setattr(steps, step, full)
         with pytest.raises((OSError, GradebookError)):
             serve_here(course, inbound)
     assert serve_here(course, inbound)
@@ -335,7 +338,7 @@ def test_the_owner_of_an_entry_is_its_linux_user_or_else_comes_from_its_name(inb
 
 
 def test_a_status_page_is_written_for_a_reason_with_lone_surrogates(course, inbound):
-    with opened_queue(course.gradebook, inbound) as queue:
+    with open_queue(course.gradebook, inbound) as queue:
         stored = queue.add('a', 'b', [Arrival(0, 'a', 0.0, REFUSED, reason='x\udcff \ud800')])
         write_status_page(course, queue)
         queue.update(*stored)

@@ -10,18 +10,17 @@ import pytest
 from course_maker import TOY, answered, with_own_database
 from serving_desk import RIGHT, arrivals, put_there, serve_here
 
-from grader.serving import desk as desk_module
 from grader.serving import inbound as inbound_module
-from grader.serving import intake, reception
+from grader.serving import intake, reception, steps
 from grader.serving import rounds as rounds_module
 from grader.serving import serve as serve_module
-from grader.serving.desk import Desk
 from grader.serving.inbound import Entry, new_entries
 from grader.serving.queue import GRADED, GRADING, REFUSED, REPLACED, Arrival
-from grader.serving.queue_file import opened_queue, queue_to_read
-from grader.serving.reception import look
+from grader.serving.queue_file import open_queue, open_queue_to_read
+from grader.serving.reception import take_in_new_entries
 from grader.serving.rounds import Rounds
 from grader.serving.status import SHOWN, status_lines, write_status_page
+from grader.serving.steps import ServingState
 
 
 @pytest.fixture
@@ -38,15 +37,15 @@ def test_submissions_that_a_later_one_replaces_delay_no_other_student(
     course, inbound, at_once, monkeypatch
 ):
     """Storing many large submissions takes long, so others are graded in between."""
-    monkeypatch.setattr(desk_module, 'BUDGET_SEC', 0.0)
+    monkeypatch.setattr(steps, 'BUDGET_SEC', 0.0)
     monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)  # all have come in before the first turn
-    place, placed = desk_module.put_in_place, []
+    place, placed = steps.put_in_place, []
 
     def puts(course, arrival):
         placed.append((arrival.student_id, arrival.state))
         return place(course, arrival)
 
-    monkeypatch.setattr(desk_module, 'put_in_place', puts)
+    monkeypatch.setattr(steps, 'put_in_place', puts)
     for number in range(5):
         folder = inbound / f'mallory+{TOY}+2026-01-01 10:00:0{number}.000000 UTC'
         folder.mkdir()
@@ -56,7 +55,7 @@ def test_submissions_that_a_later_one_replaces_delay_no_other_student(
     put_there(course, inbound, 'zoe')
     serve_here(course, inbound)
     assert [student for student, _ in placed].index('zoe') <= 3
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         found = [(each.student_id, each.state) for each in queue.find(GRADED, REPLACED)]
     assert sorted(found) == [
         ('mallory', GRADED),
@@ -72,10 +71,10 @@ def entry(name, owner, changed=0):
 
 
 @pytest.fixture
-def desk(course, inbound):
-    with opened_queue(course.gradebook, inbound) as queue:
+def serving(course, inbound):
+    with open_queue(course.gradebook, inbound) as queue:
         grading = SimpleNamespace(backend=SimpleNamespace(capacity=1))
-        yield Desk(course, queue, grading, inbound, None, lambda line: None, exporter=None)
+        yield ServingState(course, queue, grading, inbound, None, lambda line: None, exporter=None)
 
 
 @pytest.fixture
@@ -96,43 +95,43 @@ def taken(monkeypatch):
     return there, names
 
 
-def test_taking_in_pauses_after_each_entry_that_takes_long(desk, taken, monkeypatch):
+def test_taking_in_pauses_after_each_entry_that_takes_long(serving, taken, monkeypatch):
     there, names = taken
     there += [entry('1', 'mallory'), entry('2', 'mallory')]
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
-    assert [look(desk), len(names)] == [True, 1]
-    assert [look(desk), len(names)] == [True, 2]
-    assert not look(desk)
+    assert [take_in_new_entries(serving), len(names)] == [True, 1]
+    assert [take_in_new_entries(serving), len(names)] == [True, 2]
+    assert not take_in_new_entries(serving)
 
 
-def test_many_entries_that_take_a_short_time_are_taken_in_at_once(desk, taken, monkeypatch):
+def test_many_entries_that_take_a_short_time_are_taken_in_at_once(serving, taken, monkeypatch):
     there, names = taken
     there += [entry('1', 'ada'), entry('2', 'bob'), entry('3', 'zoe')]
     monkeypatch.setattr(reception, 'BUDGET_SEC', 60.0)
-    assert look(desk)
+    assert take_in_new_entries(serving)
     assert names == ['1', '2', '3']
 
 
-def test_a_student_with_many_entries_waits_for_students_with_one(desk, taken, monkeypatch):
+def test_a_student_with_many_entries_waits_for_students_with_one(serving, taken, monkeypatch):
     there, names = taken
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
     there += [entry(f'mallory {number}', 'mallory', number) for number in range(1, 5)]
     there += [entry('ada', 'ada', 10), entry('bob', 'bob', 11)]
-    while look(desk):
+    while take_in_new_entries(serving):
         pass
     assert names[:3] == ['mallory 1', 'ada', 'bob']
     assert names[3:] == ['mallory 2', 'mallory 3', 'mallory 4']
 
 
-def test_new_owners_do_not_delay_students_who_came_before_them(desk, taken, monkeypatch):
+def test_new_owners_do_not_delay_students_who_came_before_them(serving, taken, monkeypatch):
     """Where only its name decides who owns an entry, one student can pose as many owners."""
     there, names = taken
     monkeypatch.setattr(reception, 'BUDGET_SEC', 0.0)
     there.append(entry('ada 1', 'ada', 1))
-    look(desk)
+    take_in_new_entries(serving)
     there.append(entry('ada 2', 'ada', time.time()))
     there += [entry(f'{n}', f'mallory{n}', time.time() + 1) for n in range(3)]
-    look(desk)
+    take_in_new_entries(serving)
     assert names == ['ada 1', 'ada 2']
 
 
@@ -176,7 +175,7 @@ def test_an_older_refused_entry_is_still_listed_after_many_newer_ones(course, in
     serve_here(course, inbound)
     (inbound / 'zoe_nothing.ipynb').write_text('{}')
     serve_here(course, inbound)
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         assert any('honest_00_tyo' in line for line in status_lines(course, queue))
         page = write_status_page(course, queue).read_text(encoding='utf-8')
     assert '7 more before these: ./course serve --status' in page
@@ -216,10 +215,10 @@ def test_an_entry_that_is_refused_again_and_again_is_listed_once(course, inbound
 
 
 def test_a_submission_left_by_a_killed_process_is_not_shown_as_being_graded(course, inbound):
-    with opened_queue(course.gradebook, inbound) as queue:
+    with open_queue(course.gradebook, inbound) as queue:
         queue.add(f'zoe_{TOY}', '1', [Arrival(0, f'zoe_{TOY}', 1.0, GRADING, 'zoe', TOY)])
         said = list(status_lines(course, queue))
         assert './course serve FOLDER grades what has come in since' in said[0]
         assert 'Not graded to the end: the next ./course serve grades it' in said
-        with serve_module.only_one(course):
+        with serve_module.serving_lock(course):
             assert 'Being graded' in list(status_lines(course, queue))

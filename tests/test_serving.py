@@ -28,13 +28,12 @@ from grader.__main__ import main
 from grader.common.dates import date_of
 from grader.common.errors import CourseError
 from grader.notebook.restore import KEY
-from grader.serving import desk as desk_module
-from grader.serving import intake
-from grader.serving.desk import Desk, begin_turns
+from grader.serving import intake, steps
 from grader.serving.inbound import new_entries
 from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING, Arrival
-from grader.serving.queue_file import opened_queue, queue_to_read
-from grader.serving.serve import only_one
+from grader.serving.queue_file import open_queue, open_queue_to_read
+from grader.serving.serve import serving_lock
+from grader.serving.steps import ServingState, start_gradings
 from grader.storage.records import graded_notebook, records
 
 
@@ -49,7 +48,7 @@ def inbound(tmp_path):
 
 
 def states(course):
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         every = queue.find(WAITING, GRADED, REPLACED, REFUSED, FAILED)
     return [(each.student_id, each.state) for each in every]
 
@@ -187,7 +186,7 @@ def test_an_incomplete_submission_waits_until_it_is_complete(course, inbound):
 
 
 def test_only_one_process_may_serve_a_gradebook(course, inbound):
-    with only_one(course), pytest.raises(CourseError, match='another process serves'):
+    with serving_lock(course), pytest.raises(CourseError, match='another process serves'):
         serve_here(course, inbound)
 
 
@@ -216,25 +215,25 @@ def test_seeds_follow_the_answer_only_if_hidden_inputs_are_chosen_anew(course, i
 def test_only_one_submission_of_a_student_is_graded_at_a_time(course, tmp_path, monkeypatch):
     begun = []
 
-    def begin(desk, arrival, earlier):
-        desk.queue.update(arrival)
-        desk.running[Future()] = arrival
-        begun.append(arrival.whose)
+    def begin(serving, arrival, earlier):
+        serving.queue.update(arrival)
+        serving.running[Future()] = arrival
+        begun.append(arrival.submission_key)
 
-    monkeypatch.setattr(desk_module, 'begin', begin)
+    monkeypatch.setattr(steps, 'start_grading', begin)
     handed_in = [('ada', 'a'), ('ada', 'b'), ('bob', 'a')]
     arrivals = [
         Arrival(0, who, at, WAITING, who, lesson) for at, (who, lesson) in enumerate(handed_in)
     ]
     grading = SimpleNamespace(backend=SimpleNamespace(capacity=4))
-    with opened_queue(course.gradebook, tmp_path) as queue:
+    with open_queue(course.gradebook, tmp_path) as queue:
         queue.add('all of them', '', arrivals)
-        desk = Desk(course, queue, grading, tmp_path, None, print, exporter=None)
-        assert begin_turns(desk)
+        serving = ServingState(course, queue, grading, tmp_path, None, print, exporter=None)
+        assert start_gradings(serving)
         assert begun == [('ada', 'b'), ('bob', 'a')]
-        assert not begin_turns(desk)  # while these are graded
-        desk.running.clear()
-        assert begin_turns(desk)
+        assert not start_gradings(serving)  # while these are graded
+        serving.running.clear()
+        assert start_gradings(serving)
     assert begun[2:] == [('ada', 'a')]
 
 

@@ -15,7 +15,7 @@ from serving_desk import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of
 
 from grader.grading import REPLACED as REPLACED_MEANWHILE
 from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING
-from grader.serving.queue_file import queue_to_read
+from grader.serving.queue_file import open_queue_to_read
 from grader.storage.records import records
 
 
@@ -53,7 +53,7 @@ def killed_rounds(course, inbound, rounds, chance):
 
 def same_as_undisturbed(course, inbound, handed_in, latest):
     """Assert that nothing is lost, and that each score and page is as in an undisturbed run."""
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         arrivals = queue.find(GRADED, REPLACED, WAITING, REFUSED, FAILED, 'grading')
     assert len(arrivals) == len({each.entry for each in arrivals}) == handed_in
     assert {each.state for each in arrivals} <= {GRADED, REPLACED}
@@ -131,6 +131,6 @@ def test_sigterm_ends_serve_and_its_submission_stays_in_the_queue(tmp_path, inbo
     process.terminate()
     assert process.wait(timeout=60) == 128 + signal.SIGTERM
     process.stdout.close()
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         assert len(queue.find(WAITING, 'grading')) == 1
     assert Path(course.gradebook / 'arrived').is_dir()

@@ -4,7 +4,7 @@ import pytest
 
 from grader.common.errors import CourseError
 from grader.serving.queue import WAITING, Arrival
-from grader.serving.turns import next_turn, replaced_by, why_it_waits
+from grader.serving.turns import next_turn, reason_to_wait, replaced_by
 from grader.storage.deadlines import read_deadlines
 from grader.storage.resubmissions import ResubmissionRules
 
@@ -43,7 +43,7 @@ def test_a_student_with_twenty_submissions_waits_for_one_with_a_single_submissio
         number = turn(waiting, starts=starts)
         chosen = next(each for each in waiting if each.number == number)
         served.append(chosen.student_id)
-        starts.setdefault(chosen.whose, []).append(float(at + 1))
+        starts.setdefault(chosen.submission_key, []).append(float(at + 1))
         waiting.remove(chosen)
     assert served == ['ada', 'bob', 'ada']
 
@@ -53,14 +53,14 @@ def test_a_lesson_over_its_hourly_limit_waits_and_another_lesson_does_not():
     waiting = [arrival(1, 'ada', 'b'), arrival(2, 'ada', 'a')]
     starts = {('ada', 'a'): [NOW - 100, NOW - 50]}
     assert turn(waiting, starts=starts, rules=rules) == 1
-    assert 'the next is graded in 58 min' in why_it_waits(starts['ada', 'a'], rules, NOW)
-    assert why_it_waits([NOW - 3_700, NOW - 50], rules, NOW) == ''
+    assert 'the next is graded in 58 min' in reason_to_wait(starts['ada', 'a'], rules, NOW)
+    assert reason_to_wait([NOW - 3_700, NOW - 50], rules, NOW) == ''
 
 
 def test_a_submission_over_the_total_limit_is_kept_but_not_graded():
     rules = ResubmissionRules(in_total=2)
-    assert why_it_waits([1.0], rules, NOW) == ''
-    assert why_it_waits([1.0, 2.0], rules, NOW).endswith('it is kept, but not graded')
+    assert reason_to_wait([1.0], rules, NOW) == ''
+    assert reason_to_wait([1.0, 2.0], rules, NOW).endswith('it is kept, but not graded')
 
 
 def read(text):

@@ -6,7 +6,7 @@ from datetime import datetime
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.serving.exchange import feedback_folder
-from grader.serving.queue_file import queue_to_read
+from grader.serving.queue_file import open_queue_to_read
 from grader.serving.serve import serve
 from grader.serving.status import status_lines, write_status_page
 from grader.workers.workers import Workers
@@ -19,7 +19,7 @@ _INBOUND = (
 def run_serve(course: Course, asked: argparse.Namespace) -> int:
     """Serve a folder until SIGINT or SIGTERM, or print the state of the process that does."""
     if asked.status:
-        with queue_to_read(course.gradebook) as queue:
+        with open_queue_to_read(course.gradebook) as queue:
             for line in status_lines(course, queue):
                 print(line)
         return 0

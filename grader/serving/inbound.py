@@ -15,7 +15,7 @@ from grader.common.dates import utc_of
 from grader.common.text import storable
 from grader.notebook.submission import SECRET
 from grader.serving.rounds import Rounds
-from grader.serving.trouble import noted
+from grader.serving.unexpected_errors import log_unexpected_error
 
 QUIET_SEC = 1.0
 """An entry that has not changed for this long counts as complete."""
@@ -64,10 +64,10 @@ def new_entries(
         names = sorted(each.name for each in listed if not each.name.startswith('.'))
     trusted = {0, os.geteuid(), os.stat(folder).st_uid}
     found, rounds = [], rounds or Rounds()
-    for name in rounds.of(_to_look_at(folder, names, seen, trusted)):
+    for name in rounds.entries_in_turn(_entries_to_check(folder, names, seen, trusted)):
         before = seen.get(key_of(name))
         try:
-            found.append(_look(folder, name, before, trusted, rounds))
+            found.append(_check_entry(folder, name, before, trusted, rounds))
         except (FileNotFoundError, NotADirectoryError):
             continue  # removed meanwhile: what is left of it is checked in the next round
         except Exception as error:
@@ -78,7 +78,7 @@ def new_entries(
     )
 
 
-def _to_look_at(
+def _entries_to_check(
     folder: Path, names: Collection[str], seen: Mapping[str, str], trusted: Collection[int]
 ) -> Iterator[tuple[str, str]]:
     """Yield the names of entries that may be new, with their possible owners."""
@@ -86,7 +86,7 @@ def _to_look_at(
         try:
             status = os.lstat(folder / name)
         except OSError:
-            yield name, _named(name)  # `_look` will find out why
+            yield name, _owner_from_name(name)  # `_check_entry` will find out why
             continue
         before = seen.get(key_of(name))
         # nbgrader makes a new folder for each submission, and does not change it afterwards
@@ -94,14 +94,14 @@ def _to_look_at(
             yield name, _owner(name, status, trusted)
 
 
-def _look(
+def _check_entry(
     folder: Path, name: str, seen: str | None, trusted: Collection[int], rounds: Rounds
 ) -> Entry | None:
     """Return an entry; None if it has not changed since `seen`. Raises OSError if it is gone."""
     status = os.lstat(folder / name)
     digest, newest, names = hashlib.sha256(), status.st_ctime, set()
     for path, each in _tree(folder, name, status):
-        rounds.counted(1)
+        rounds.count_files(1)
         newest = max(newest, each.st_ctime)
         names.add(path.rpartition('/')[2])
         digest.update(os.fsencode(path))
@@ -133,10 +133,10 @@ def _with_problem(folder: Path, name: str, seen: str | None, error: Exception) -
     elif isinstance(error, OSError):
         problem = f'it cannot be read: {error.strerror}'
     else:
-        problem = f'it cannot be read, because {noted(name, error)}'
+        problem = f'it cannot be read, because {log_unexpected_error(name, error)}'
     when = (utc_of(changed) if 0 < changed <= now else None) or datetime.now(UTC)
     is_whole = changed <= now - QUIET_SEC
-    return Entry(name, fingerprint, when, is_whole, owner=_named(name), problem=problem)
+    return Entry(name, fingerprint, when, is_whole, owner=_owner_from_name(name), problem=problem)
 
 
 def _place(status: os.stat_result) -> str:
@@ -144,10 +144,10 @@ def _place(status: os.stat_result) -> str:
 
 
 def _owner(name: str, status: os.stat_result, trusted: Collection[int]) -> str:
-    return _named(name) if status.st_uid in trusted else f'user {status.st_uid}'
+    return _owner_from_name(name) if status.st_uid in trusted else f'user {status.st_uid}'
 
 
-def _named(name: str) -> str:
+def _owner_from_name(name: str) -> str:
     """Return the owner that an entry's name suggests, whatever form it has."""
     return name.partition('+' if '+' in name else '_')[0]
 

@@ -51,11 +51,11 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
         reasons = [each.reason for each in rest if each.matters and _is_work(each.incoming)]
         rows = []
         for each, problem in zip(hand_ins, problems, strict=True):
-            problem = problem or _why_no_room(course, each, waiting)
+            problem = problem or _no_room_reason(course, each, waiting)
             if problem:
                 reasons.append(problem)
             else:
-                folder = _keep(each, shelf)
+                folder = _copy_to(each, shelf)
                 whose = (each.student_id, each.assignment)
                 rows.append(_arrival(entry, WAITING, *whose, folder=folder))
                 waiting.append(rows[-1])
@@ -77,7 +77,7 @@ def put_in_place(course: Course, arrival: Arrival) -> tuple[str, str]:
     folder = course.gradebook / FOLDER / arrival.folder
     hand_in = _hand_in(folder, arrival)
     with gradebook_lock(course.gradebook):
-        return take(course, hand_in, lambda: records(course, only={arrival.whose}))
+        return take(course, hand_in, lambda: records(course, only={arrival.submission_key}))
 
 
 def secret_of(course: Course, arrival: Arrival) -> str:
@@ -86,14 +86,14 @@ def secret_of(course: Course, arrival: Arrival) -> str:
     return path.read_bytes().decode(errors='replace') if path.is_file() else ''
 
 
-def discard(course: Course, arrivals: Iterable[Arrival]) -> None:
+def remove_copies(course: Course, arrivals: Iterable[Arrival]) -> None:
     """Remove the copies of submissions that are now in gradebook/submitted/ or kept elsewhere."""
     for each in arrivals:
         if each.folder:
             shutil.rmtree(course.gradebook / FOLDER / each.folder, ignore_errors=True)
 
 
-def tidy(course: Course, queue: Queue) -> None:
+def remove_unrecorded_copies(course: Course, queue: Queue) -> None:
     """Remove copies without a row: the process was ended before it recorded them."""
     known = {each.folder for each in queue.find(WAITING, KEEPING)}
     for left in (course.gradebook / FOLDER).glob('*'):
@@ -117,7 +117,7 @@ def _hand_in(folder: Path, arrival: Arrival) -> MatchedFile:
     )
 
 
-def _why_no_room(course: Course, each: MatchedFile, waiting: Sequence[Arrival]) -> str:
+def _no_room_reason(course: Course, each: MatchedFile, waiting: Sequence[Arrival]) -> str:
     """Return why a student's submission can't be taken in now; '' if there is room for it."""
     theirs = [other for other in waiting if other.student_id == each.student_id]
     if sum(other.state == WAITING for other in theirs) >= MOST_WAITING:
@@ -141,7 +141,7 @@ def _size_of(folder: Path) -> int:
     return sum(path.lstat().st_size for path in inside)
 
 
-def _keep(each: MatchedFile, shelf: Path) -> str:
+def _copy_to(each: MatchedFile, shelf: Path) -> str:
     """Copy a submission to a new folder and flush it to the disk; return the folder's name."""
     folder = Path(tempfile.mkdtemp(prefix='', dir=shelf))
     files = {f'{each.assignment}.ipynb': each.notebook.readable, **each.extra}

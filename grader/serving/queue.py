@@ -4,7 +4,7 @@ import sqlite3
 from collections.abc import Iterable, Mapping
 from dataclasses import astuple, dataclass, fields, replace
 
-from grader.common.text import storable
+from grader.common.text import printable, storable
 
 WAITING, GRADING, GRADED = 'waiting', 'grading', 'graded'
 KEEPING, REPLACED, REFUSED, FAILED = 'being kept', 'replaced', 'refused', 'failed'
@@ -36,9 +36,14 @@ class Arrival:
     max_score: float | None = None
 
     @property
-    def whose(self) -> tuple[str, str]:
+    def submission_key(self) -> tuple[str, str]:
         """Return the student and the assignment."""
         return self.student_id, self.assignment
+
+    @property
+    def printable_name(self) -> str:
+        """Return how messages name a submission."""
+        return printable(f'{self.assignment} of {self.student_id}')
 
 
 COLUMNS = tuple(field.name for field in fields(Arrival))

@@ -22,7 +22,7 @@ _SCHEMA = f"""
 
 
 @contextmanager
-def opened_queue(gradebook: Path, inbound: Path) -> Iterator[Queue]:
+def open_queue(gradebook: Path, inbound: Path) -> Iterator[Queue]:
     """Open the queue of a gradebook for an inbound folder; make it if there is none."""
     gradebook.mkdir(parents=True, exist_ok=True)
     folder = storable(str(inbound.resolve()))
@@ -58,7 +58,7 @@ def _adopt(database: sqlite3.Connection, folder: str) -> None:
 
 
 @contextmanager
-def queue_to_read(gradebook: Path) -> Iterator[Queue | None]:
+def open_queue_to_read(gradebook: Path) -> Iterator[Queue | None]:
     """Open the queue of a gradebook only to read it; None if there is none."""
     if not (gradebook / FILE).exists():
         yield None

@@ -4,32 +4,32 @@ import time
 from collections.abc import Mapping, Sequence
 
 from grader.common.text import printable
-from grader.serving.desk import Desk, shown
 from grader.serving.inbound import Entry, new_entries
 from grader.serving.intake import refuse, take_in
 from grader.serving.queue import REFUSED, Arrival
-from grader.serving.trouble import meets_all, noted
+from grader.serving.steps import ServingState
+from grader.serving.unexpected_errors import affects_all_submissions, log_unexpected_error
 
 BUDGET_SEC = 0.5
 """How long entries are taken in before gradings go on; one may take longer."""
 
 
-def look(desk: Desk) -> bool:
+def take_in_new_entries(serving: ServingState) -> bool:
     """Take in some new entries of the inbound folder; return whether there were any."""
-    waiting = list(new_entries(desk.inbound, desk.seen, desk.rounds))
+    waiting = list(new_entries(serving.inbound, serving.seen, serving.rounds))
     end, found = time.monotonic() + BUDGET_SEC, bool(waiting)
     if found:
-        desk.rounds.begin()
+        serving.rounds.begin()
     while waiting:
-        entry = next_entry(waiting, desk.last_taken)
+        entry = next_entry(waiting, serving.last_taken)
         waiting.remove(entry)
-        for arrival in _arrivals(desk, entry):
+        for arrival in _take_in_entry(serving, entry):
             if arrival.state == REFUSED:
-                desk.say(printable(f'not taken, look at it: {arrival.entry}: {arrival.reason}'))
+                serving.say(printable(f'not taken, look at it: {arrival.entry}: {arrival.reason}'))
             else:
-                desk.say(f'taken in: {shown(arrival)}')
-        desk.seen[entry.key] = entry.fingerprint
-        desk.last_taken[entry.owner] = time.time()
+                serving.say(f'taken in: {arrival.printable_name}')
+        serving.seen[entry.key] = entry.fingerprint
+        serving.last_taken[entry.owner] = time.time()
         if time.monotonic() >= end:
             break
     return found
@@ -50,13 +50,13 @@ def next_entry(waiting: Sequence[Entry], last: Mapping[str, float]) -> Entry:
     )
 
 
-def _arrivals(desk: Desk, entry: Entry) -> list[Arrival]:
+def _take_in_entry(serving: ServingState, entry: Entry) -> list[Arrival]:
     """Record what an entry contains; an error with this entry alone is why it is refused."""
     if entry.problem:
-        return refuse(desk.queue, entry, entry.problem)
+        return refuse(serving.queue, entry, entry.problem)
     try:
-        return take_in(desk.course, desk.queue, desk.inbound, entry)
+        return take_in(serving.course, serving.queue, serving.inbound, entry)
     except Exception as error:
-        if meets_all(error):
+        if affects_all_submissions(error):
             raise
-        return refuse(desk.queue, entry, noted(entry.name, error))
+        return refuse(serving.queue, entry, log_unexpected_error(entry.name, error))

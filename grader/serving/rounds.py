@@ -20,8 +20,8 @@ class Rounds:
     _since: set[str] = field(default_factory=set)
     _left: int = 0
 
-    def of(self, entries: Iterable[tuple[str, str]]) -> Iterator[str]:
-        """Yield names of entries, given with their owners, until enough files were `counted`.
+    def entries_in_turn(self, entries: Iterable[tuple[str, str]]) -> Iterator[str]:
+        """Yield names of entries, given with their owners, until enough files were counted.
 
         One entry of each owner comes before the second one of any; the longest unchecked come
         first.
@@ -45,7 +45,7 @@ class Rounds:
         if not self.is_under_way:
             self.begin()
 
-    def counted(self, files: int) -> None:
+    def count_files(self, files: int) -> None:
         """Subtract the files that were checked."""
         self._left -= files
 

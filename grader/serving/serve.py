@@ -11,12 +11,12 @@ from filelock import FileLock, Timeout
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grading import Grading
-from grader.serving.desk import Desk, begin_turns, finish_done, keep_replaced
-from grader.serving.gone import Gone
-from grader.serving.intake import tidy
+from grader.serving.intake import remove_unrecorded_copies
 from grader.serving.queue import Queue
-from grader.serving.queue_file import opened_queue
-from grader.serving.reception import look
+from grader.serving.queue_file import open_queue
+from grader.serving.reception import take_in_new_entries
+from grader.serving.removed_entries import RemovedEntries
+from grader.serving.steps import ServingState, start_gradings, store_finished, store_replaced
 from grader.storage.backups import bring_in_order
 from grader.storage.database import one_engine
 from grader.workers.backend import Backend
@@ -44,34 +44,39 @@ def serve(
     GradebookError if it can't be written to; the next run finishes what was begun.
     """
     with (
-        only_one(course),
+        serving_lock(course),
         backend,
-        opened_queue(course.gradebook, inbound) as queue,
+        open_queue(course.gradebook, inbound) as queue,
         one_engine(course.db_url),
     ):
         isolated = backend.require_isolation(trust_students=trust_students)
         bring_in_order(course)
         queue.resume()
-        tidy(course, queue)
+        remove_unrecorded_copies(course, queue)
         grading = Grading(course, backend, isolated, trust_students=trust_students)
-        desk = Desk(course, queue, grading, inbound, feedback, say, seen=queue.seen())
-        gone = Gone(desk)
+        serving = ServingState(course, queue, grading, inbound, feedback, say, seen=queue.seen())
+        removed = RemovedEntries(serving)
         while True:
-            events = [look(desk), begin_turns(desk), finish_done(desk), keep_replaced(desk)]
-            if any([*events, gone.forget()]):
+            events = [
+                take_in_new_entries(serving),
+                start_gradings(serving),
+                store_finished(serving),
+                store_replaced(serving),
+            ]
+            if any([*events, removed.forget()]):
                 changed(queue)
-            elif desk.rounds.is_under_way:
+            elif serving.rounds.is_under_way:
                 continue
-            elif once and not desk.running:
+            elif once and not serving.running:
                 return
-            elif desk.running:
-                wait(desk.running, timeout=LOOK_SEC, return_when=FIRST_COMPLETED)
+            elif serving.running:
+                wait(serving.running, timeout=LOOK_SEC, return_when=FIRST_COMPLETED)
             else:
                 time.sleep(LOOK_SEC)
 
 
 @contextmanager
-def only_one(course: Course) -> Iterator[None]:
+def serving_lock(course: Course) -> Iterator[None]:
     """Hold the lock for serving a gradebook. Raises CourseError if another process has it."""
     course.gradebook.mkdir(parents=True, exist_ok=True)
     lock = FileLock(course.gradebook / LOCK, fallback_to_soft=False)

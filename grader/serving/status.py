@@ -13,7 +13,7 @@ from grader.common.text import printable, visible
 from grader.course import Course
 from grader.serving.queue import FAILED, GRADED, GRADING, REFUSED, WAITING, Arrival, Queue
 from grader.serving.serve import LOCK
-from grader.serving.turns import why_it_waits
+from grader.serving.turns import reason_to_wait
 from grader.storage.deadlines import Deadlines, deadlines
 
 PAGE = 'serve_status.html'
@@ -61,7 +61,8 @@ def sections(
         if more > 0 and state in FOR_A_PERSON:
             lines.append(f'{more:,} more before these: ./course serve --status')
         for each in found:
-            waits = why_it_waits(starts.get(each.whose, ()), rules, now) * (state == WAITING)
+            started = starts.get(each.submission_key, ())
+            waits = reason_to_wait(started, rules, now) * (state == WAITING)
             lines.append(_line(each, waits))
         if found:
             yield heading, lines

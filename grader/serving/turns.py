@@ -25,7 +25,9 @@ def next_turn(
     turns = []
     for student, theirs in _by_student(waiting):
         allowed = [
-            each for each in theirs if not why_it_waits(starts.get(each.whose, ()), rules, now)
+            each
+            for each in theirs
+            if not reason_to_wait(starts.get(each.submission_key, ()), rules, now)
         ]
         if allowed and student not in busy:
             newest = max(allowed, key=lambda each: (each.arrived, each.number))
@@ -39,12 +41,12 @@ def replaced_by(chosen: Arrival, waiting: Sequence[Arrival]) -> list[Arrival]:
     return [
         each
         for each in waiting
-        if each.whose == chosen.whose
+        if each.submission_key == chosen.submission_key
         and (each.arrived, each.number) < (chosen.arrived, chosen.number)
     ]
 
 
-def why_it_waits(starts: Sequence[float], rules: ResubmissionRules, now: float) -> str:
+def reason_to_wait(starts: Sequence[float], rules: ResubmissionRules, now: float) -> str:
     """Return why the rules do not allow one more grading now, or ''."""
     if rules.in_total is not None and len(starts) >= rules.in_total:
         return (
@@ -65,6 +67,6 @@ def _by_student(waiting: Sequence[Arrival]) -> Iterator[tuple[str, list[Arrival]
     """Yield each student with the newest submission for each assignment."""
     newest: dict[tuple[str, str], Arrival] = {}
     for each in sorted(waiting, key=lambda each: (each.arrived, each.number)):
-        newest[each.whose] = each
+        newest[each.submission_key] = each
     for student in sorted({whose[0] for whose in newest}):
         yield student, [each for whose, each in newest.items() if whose[0] == student]

@@ -12,9 +12,9 @@ from course_maker import TOY, answered, with_own_database
 from serving_desk import RIGHT, arrivals, put_there, serve_here
 
 from grader.serving import gone as gone_module
-from grader.serving.gone import Gone
 from grader.serving.queue import GRADED, REFUSED, REPLACED, Arrival
-from grader.serving.queue_file import FILE, opened_queue, queue_to_read
+from grader.serving.queue_file import FILE, open_queue, open_queue_to_read
+from grader.serving.removed_entries import RemovedEntries
 
 
 @pytest.fixture
@@ -47,9 +47,9 @@ def test_a_refused_entry_is_listed_until_it_is_gone_and_again_when_it_returns(
 @pytest.fixture
 def refused_here(course, inbound):
     """Finds entries that are gone, and records one that was refused, at least in part."""
-    with opened_queue(course.gradebook, inbound) as queue:
+    with open_queue(course.gradebook, inbound) as queue:
         seen = {}
-        desk = SimpleNamespace(inbound=inbound, queue=queue, seen=seen, say=lambda line: None)
+        serving = SimpleNamespace(inbound=inbound, queue=queue, seen=seen, say=lambda line: None)
 
         def refused(name, *taken):
             (inbound / name).touch()
@@ -57,7 +57,7 @@ def refused_here(course, inbound):
             queue.add(name, '1', [*rows, Arrival(0, name, 1.0, REFUSED, reason='no work')])
             seen[name] = '1'
 
-        yield Gone(desk), refused
+        yield RemovedEntries(serving), refused
 
 
 def test_a_partly_graded_entry_is_still_known_after_it_vanishes(inbound, refused_here, course):
@@ -69,7 +69,7 @@ def test_a_partly_graded_entry_is_still_known_after_it_vanishes(inbound, refused
         each.unlink()
     assert gone.forget()
     assert [each.entry for each in arrivals(course)] == ['all.zip']
-    with opened_queue(course.gradebook, inbound) as queue:
+    with open_queue(course.gradebook, inbound) as queue:
         assert queue.seen() == {'all.zip': '1'}
 
 
@@ -129,7 +129,7 @@ def test_two_folders_with_equal_entry_names_are_each_taken_in_once(
         if not (folder / 'zoe').exists():
             put_there(course, folder, 'zoe')
         serve_here(course, folder)
-    with queue_to_read(course.gradebook) as queue:
+    with open_queue_to_read(course.gradebook) as queue:
         assert len(queue.find(GRADED, REPLACED)) == 2
 
 
@@ -146,10 +146,10 @@ def test_entries_of_a_moved_folder_are_not_taken_in_again(course, inbound, other
 
 
 def test_a_folder_mounted_under_two_paths_counts_as_one_folder(course, inbound, other):
-    with opened_queue(course.gradebook, inbound) as queue:
+    with open_queue(course.gradebook, inbound) as queue:
         queue.add('zoe', 'same files', [])
         queue.add('ada', 'before', [])
-    with opened_queue(course.gradebook, other) as queue:
+    with open_queue(course.gradebook, other) as queue:
         queue.add('ada', 'after', [])
         assert queue.seen() == {'zoe': 'same files', 'ada': 'after'}
 

@@ -17,7 +17,7 @@ from grader.common.text import printable
 _OF_ONE = (UnreadableSubmission, DamagedResult, TaskFailed)
 
 
-def meets_all(error: Exception) -> bool:
+def affects_all_submissions(error: Exception) -> bool:
     """Whether an error would affect the next submission, too: of disk, gradebook or course."""
     if isinstance(error, OSError):
         return error.errno in MACHINE_FULL
@@ -26,7 +26,7 @@ def meets_all(error: Exception) -> bool:
     return isinstance(error, CourseError | sqlite3.Error) and not isinstance(error, _OF_ONE)
 
 
-def noted(which: str, error: Exception) -> str:
+def log_unexpected_error(which: str, error: Exception) -> str:
     """Log an unexpected error; return it as text for the terminal and the list of submissions."""
     logging.error('%s', printable(which), exc_info=error)
     return f'the grader failed: {type(error).__name__}: {error}'
