@@ -244,7 +244,7 @@ def test_a_lack_of_space_or_files_is_not_blamed_on_the_archive(tmp_path, monkeyp
     def full(*_, **__):
         raise OSError(number, 'No space left on device')
 
-    monkeypatch.setattr(archives, 'copy', full)
+    monkeypatch.setattr(archives, 'copy_at_most', full)
     archive = zipped(tmp_path, ('a.py', b'x'))
     with pytest.raises(OSError, match='No space'):
         members(archive)

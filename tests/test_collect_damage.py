@@ -52,7 +52,7 @@ def test_a_full_disk_is_reported_in_a_sentence(course, came_in, monkeypatch):
         raise OSError(28, 'No space left on device')
 
     write(came_in / f'ada_{TOY}.ipynb', '')
-    monkeypatch.setattr(module, 'put_whole', full)
+    monkeypatch.setattr(module, 'put_atomically', full)
     with pytest.raises(CourseError, match='the disk is full: what was collected is kept whole'):
         rows(course, came_in)
 

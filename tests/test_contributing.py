@@ -52,7 +52,7 @@ def test_the_row_of_a_platform_reads_its_names(monkeypatch):
     monkeypatch.setattr(platforms, 'PLATFORMS', (*platforms.PLATFORMS, brightspace))
     (name,) = re.findall(r'`(12345-.+?)`', PAGE)
     label = platforms.label_in(name)
-    assert (label.platform, label.number, label.who) == (brightspace, '12345', 'Ada Lovelace')
+    assert (label.platform, label.number, label.student) == (brightspace, '12345', 'Ada Lovelace')
     assert platforms.student_in(name) == 'Ada Lovelace'
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from grader.collect import live_folders
 from grader.collect.matching import match
-from grader.collect.uploads import look_into, look_into_entry
+from grader.collect.uploads import read_inbound_entry, read_upload
 from grader.notebook.submission import SECRET, TIMESTAMP
 
 ALICE, BOB = 4_001, 4_002
@@ -62,10 +62,10 @@ def collected(inbound, tmp_path):
     """Match the files; return the student of each by its content, and the reasons of refusals."""
     aside = tmp_path / 'aside'
     aside.mkdir(exist_ok=True)
-    taken, left = match(list(look_into(inbound, aside)), [LESSON])
+    taken, left = match(list(read_upload(inbound, aside)), [LESSON])
     whose = {each.notebook.readable.read_text(): each.student_id for each in taken}
     others = [each for each in left if each.incoming.parts[-1] != TIMESTAMP]
-    return whose, [each.reason for each in others if each.matters]
+    return whose, [each.reason for each in others if each.needs_attention]
 
 
 @needs_root
@@ -84,7 +84,7 @@ def test_the_time_of_a_submission_is_its_change_time_not_a_time_that_was_set(inb
     folder = submit(inbound, 'alice', ALICE)
     os.utime(folder / f'{LESSON}.ipynb', (0, 0))
     os.utime(folder, (0, 0))
-    (one,), _ = match(list(look_into(inbound, tmp_path)), [LESSON])
+    (one,), _ = match(list(read_upload(inbound, tmp_path)), [LESSON])
     assert before <= one.handed_in <= datetime.now(UTC)
     assert one.secret.read_text() == 'aa'
 
@@ -114,12 +114,16 @@ def test_files_of_other_users_in_an_instructors_folder_are_left_out(inbound, tmp
     put(theirs / 'greeter (1)' / 'setup.py', BOB)
     put(theirs / 'greeter (1)' / 'evil.py', ALICE)
     (one,), left = match(
-        list(look_into(inbound, tmp_path, {'greeter'})), [LESSON], packages={LESSON: ['greeter']}
+        list(read_upload(inbound, tmp_path, {'greeter'})), [LESSON], packages={LESSON: ['greeter']}
     )
     assert [*one.extra] == ['own.py', 'greeter/setup.py']
     assert one.extra['greeter/setup.py'].read_text() == str(BOB)
     assert one.secret is None
-    why = {each.incoming.path.removeprefix('bob/'): each.reason for each in left if each.matters}
+    why = {
+        each.incoming.path.removeprefix('bob/'): each.reason
+        for each in left
+        if each.needs_attention
+    }
     assert {*why} == {'helper.py', SECRET, 'greeter/setup.py', 'greeter (1)/evil.py'}
     assert why['helper.py'] == (
         'it is beside the notebook of bob, and the user alice put it there'
@@ -140,7 +144,7 @@ def test_a_later_change_to_another_file_makes_a_submission_later(late, inbound, 
     time.sleep(0.05)
     (folder / late).write_text('finished')
     (one,), _ = match(
-        list(look_into(inbound, tmp_path, {'greeter'})), [LESSON], packages={LESSON: ['greeter']}
+        list(read_upload(inbound, tmp_path, {'greeter'})), [LESSON], packages={LESSON: ['greeter']}
     )
     assert one.extra[late].read_text() == 'finished'
     assert one.handed_in > due
@@ -219,7 +223,7 @@ def test_no_link_is_followed_while_links_are_swapped_in_all_the_time(inbound, tm
         for number in range(200):
             aside = tmp_path / f'aside{number}'
             aside.mkdir()
-            for each in look_into_entry(inbound, folder.name, aside):
+            for each in read_inbound_entry(inbound, folder.name, aside):
                 if each.file and each.parts[-1] == target.name:
                     seen.add(each.file.read_text())
     finally:
@@ -281,7 +285,7 @@ def test_a_file_with_a_time_beyond_the_calendar_is_taken_without_that_time(
 ):
     folder = submit(inbound, 'alice', owner)
     (folder / 'timestamp.txt').unlink()
-    found = [each for each in look_into(inbound, tmp_path) if each.parts[-1].endswith('.ipynb')]
+    found = [each for each in read_upload(inbound, tmp_path) if each.parts[-1].endswith('.ipynb')]
     assert [(each.problem, each.modified) for each in found] == [('', None)]
     before = datetime.now(UTC)
     assert all(each.changed <= before for each in found if owner == ALICE)

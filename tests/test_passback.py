@@ -274,7 +274,7 @@ def test_feedback_goes_back_under_the_names_that_moodle_gave_out(course, capsys)
         names = archive.namelist()
         assert archive.read(names[0]).decode() == '<p>Ada Lovelace</p>'
     labels = [label_in(name) for name in names]
-    assert [(each.who, each.number, each.rest) for each in labels] == [
+    assert [(each.student, each.number, each.rest) for each in labels] == [
         ('Ada Lovelace', '8001', '03_publisher.html'),
         ('王 小明', '8003', '03_publisher.html'),
     ]

@@ -8,7 +8,7 @@ import pytest
 
 from grader.collect import archive_entries, live_folders, uploads
 from grader.collect.unpack_limits import UnpackLimits
-from grader.collect.uploads import look_into, read_apart
+from grader.collect.uploads import read_archive_as_json, read_upload
 from grader.common.errors import CourseError
 
 
@@ -31,7 +31,7 @@ def zip_of(**files):
 def seen(source, tmp_path):
     aside = tmp_path / 'aside'
     aside.mkdir(exist_ok=True)
-    found = list(look_into(source, aside))
+    found = list(read_upload(source, aside))
     return {each.path: each.problem or (each.file and each.file.read_bytes()) for each in found}
 
 
@@ -65,7 +65,7 @@ def test_archives_in_archives_are_unpacked_and_named_like_folders(source, tmp_pa
         'ada.zip/notes.txt': None,
         'b.py': b'y',
     }
-    (found,) = (each for each in look_into(source, tmp_path) if each.parts[-1] == 'a.ipynb')
+    (found,) = (each for each in read_upload(source, tmp_path) if each.parts[-1] == 'a.ipynb')
     assert found.parts[: found.archive] == ('class.zip',)
 
 
@@ -126,14 +126,16 @@ def test_inner_archives_share_the_size_limit_of_their_outer_archive(source, tmp_
         files = {f'{n}_tbz2': packed for n in range(3)} | {'a_ipynb': 'x', 'z_tbz2': small}
         (source / f'{student}.zip').write_bytes(zip_of(**files))
     (source / 'eve.zip').write_bytes(zip_of(z_tbz2=large))
-    left, opened = [], archive_entries.copy
+    left, opened = [], archive_entries.copy_at_most
 
     def copied(source, target, *, most):
         left.append(most)
         return opened(source, target, most=most)
 
-    monkeypatch.setattr(archive_entries, 'copy', copied)
-    monkeypatch.setattr(uploads, 'parse', lambda _, *arguments, limits: read_apart(*arguments))
+    monkeypatch.setattr(archive_entries, 'copy_at_most', copied)
+    monkeypatch.setattr(
+        uploads, 'parse', lambda _, *arguments, limits: read_archive_as_json(*arguments)
+    )
     found = seen(source, tmp_path)
     assert [round(each, -4) for each in left] == [100_000, 30_000, 100_000, 100_000]
     assert found['ada.zip/a.ipynb'] == found['bob.zip/a.ipynb'] == b'x'
@@ -191,12 +193,12 @@ def test_leftover_folders_are_marked_as_litter_and_refused_paths_are_listed(sour
             box.addfile(tarfile.TarInfo(name))
     (source / '.git').mkdir()
     (source / '.git/a.ipynb').touch()
-    found = list(look_into(source, tmp_path))
-    assert [each.path for each in found if not each.litter] == [
+    found = list(read_upload(source, tmp_path))
+    assert [each.path for each in found if not each.is_litter] == [
         'ada.tar/a.ipynb',
         'ada.tar/../a.ipynb',
     ]
-    assert next(each.path for each in found if each.litter) == '.git'
+    assert next(each.path for each in found if each.is_litter) == '.git'
 
 
 @pytest.mark.parametrize(

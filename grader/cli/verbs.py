@@ -57,10 +57,10 @@ def run_translate(course: 'Course', asked: argparse.Namespace) -> int:
 def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
     """Take in submissions, a line for each file; return 1 if none was taken or one was left."""
     from grader.collect.collect import LEFT, collect
-    from grader.collect.collect_table import lines
+    from grader.collect.collect_table import table_lines
 
     rows = list(collect(course, asked.source, file_times=asked.file_times))
-    for line in lines(rows, asked.source):
+    for line in table_lines(rows, asked.source):
         print(line)
     taken = any(row.student_id for row in rows)
     if taken:

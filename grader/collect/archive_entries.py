@@ -46,25 +46,25 @@ class ArchiveEntry:
     """Opens the file; reading it can still raise any error of a broken archive."""
 
 
-class Refused(Exception):
+class ArchiveRefused(Exception):
     """Why reading can't go on, in a sentence."""
 
 
-def entries(
+def read_entries(
     archive: Path, *, name: str, aside: Path, left: UnpackLimits
 ) -> Iterator[ArchiveEntry]:
     """Yield the files that an archive lists, without folders.
 
     `name` shows the kind of archive. A tar is decompressed into `aside` first, and its size is
-    subtracted from `left`. Raises Refused, and whatever Python raises for a broken archive.
+    subtracted from `left`. Raises ArchiveRefused, and whatever Python raises for a broken archive.
     """
     if name.lower().endswith('.zip'):
-        yield from _zipped(archive)
+        yield from _zip_entries(archive)
     else:
-        yield from _tarred(archive, name=name, aside=aside, left=left)
+        yield from _tar_entries(archive, name=name, aside=aside, left=left)
 
 
-def copy(source: IO[bytes], target: IO[bytes], *, most: int) -> bool:
+def copy_at_most(source: IO[bytes], target: IO[bytes], *, most: int) -> bool:
     """Copy `most` bytes at most; return whether that was all."""
     while chunk := source.read(min(CHUNK, most + 1)):
         most -= len(chunk)
@@ -79,11 +79,11 @@ class _BoundedReads(io.FileIO):
 
     def read(self, size: int | None = -1) -> bytes:
         if size is not None and size > MAX_READ_BYTES:
-            raise Refused(f'broken: its table of contents claims {size / 1e6:.0f} MB')
+            raise ArchiveRefused(f'broken: its table of contents claims {size / 1e6:.0f} MB')
         return super().read(size)
 
 
-def _zipped(archive: Path) -> Iterator[ArchiveEntry]:
+def _zip_entries(archive: Path) -> Iterator[ArchiveEntry]:
     with _BoundedReads(archive) as raw, zipfile.ZipFile(raw) as box:
         for info in box.infolist():
             if info.is_dir():
@@ -118,7 +118,7 @@ def _local(date: tuple[int, int, int, int, int, int]) -> datetime | None:
         return None
 
 
-def _tarred(
+def _tar_entries(
     archive: Path, *, name: str, aside: Path, left: UnpackLimits
 ) -> Iterator[ArchiveEntry]:
     with tempfile.TemporaryDirectory(dir=aside) as folder:
@@ -140,23 +140,25 @@ def _tarred(
             raw.seek(box.offset)
             end = raw.read(tarfile.BLOCKSIZE)
             if len(end) < tarfile.BLOCKSIZE or any(end):
-                raise Refused('broken: it ends too early, or is no tar any more')
+                raise ArchiveRefused('broken: it ends too early, or is no tar any more')
 
 
 def _decompress(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> None:
     """Decompress a tar; all its bytes count, because there may be a thousand like it."""
     most = min(left.bytes, left.tar_bytes)
     if most <= 0:
-        raise Refused('not unpacked, because what came before it was too large together: a bomb?')
+        raise ArchiveRefused(
+            'not unpacked, because what came before it was too large together: a bomb?'
+        )
     reader, is_whole = TAR_READERS[Path(name.lower()).suffix], False
     with reader(archive, 'rb') as packed, plain.open('wb') as unpacked:
         try:
-            is_whole = copy(packed, unpacked, most=most)
+            is_whole = copy_at_most(packed, unpacked, most=most)
         finally:
             read = unpacked.tell() + (0 if is_whole else CHUNK)
             left.tar_bytes -= min(left.tar_bytes, read)
     if not is_whole:
-        raise Refused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
+        raise ArchiveRefused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
 
 
 def _parts(path: str) -> tuple[tuple[str, ...], str]:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from grader.collect.archive_entries import ArchiveEntry, Refused, copy, entries
+from grader.collect.archive_entries import ArchiveEntry, ArchiveRefused, copy_at_most, read_entries
 from grader.collect.unpack_limits import UnpackLimits
 from grader.common.errors import MACHINE_FULL
 from grader.common.text import shorten
@@ -61,31 +61,31 @@ def unpack(
     whatever is wrong with the archive is the problem of a member.
     """
     try:
-        for entry in entries(archive, name=name, aside=aside, left=left):
+        for entry in read_entries(archive, name=name, aside=aside, left=left):
             left.files -= 1
             if left.files < 0:
-                raise Refused('more files in it than are unpacked')
+                raise ArchiveRefused('more files in it than are unpacked')
             file, problem = None, entry.problem
             if not problem and wanted(entry.parts):
-                file, problem = _copied(entry, aside, left)
+                file, problem = _copy_aside(entry, aside, left)
             yield Member(entry.parts, entry.modified, file, problem)
-    except Refused as refusal:
+    except ArchiveRefused as refusal:
         yield Member((), problem=f'{refusal}; what comes after that was not read')
     except _BROKEN as error:
-        yield Member((), problem=_broken(error))
+        yield Member((), problem=_damage_message(error))
 
 
-def _copied(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path | None, str]:
+def _copy_aside(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path | None, str]:
     """Copy an entry to a new name in `aside`; return its path, or the problem."""
     most = min(MAX_FILE_BYTES, left.bytes)
     problem = f'over {most / 1e6:.0f} MB once unpacked: a bomb?'
     with tempfile.NamedTemporaryFile(dir=aside, delete=False) as target:
         try:
             with entry.content() as source:
-                if copy(source, target, most=most):
+                if copy_at_most(source, target, most=most):
                     problem = ''
         except _BROKEN as error:
-            problem = _broken(error)
+            problem = _damage_message(error)
         finally:
             left.bytes -= target.tell()
             if problem:
@@ -93,7 +93,7 @@ def _copied(entry: ArchiveEntry, aside: Path, left: UnpackLimits) -> tuple[Path 
     return (None if problem else Path(target.name)), problem
 
 
-def _broken(error: Exception) -> str:
+def _damage_message(error: Exception) -> str:
     """Describe what is wrong with an archive; re-raise if the disk or the memory is full."""
     if isinstance(error, OSError) and error.errno in MACHINE_FULL:
         raise error

@@ -18,12 +18,12 @@ from grader.collect.submission_folders import (
     contents,
     contents_of_earlier,
     digests,
+    put_atomically,
     put_numbered,
-    put_whole,
     within,
     writer,
 )
-from grader.collect.uploads import look_into
+from grader.collect.uploads import read_upload
 from grader.common.dates import date_of
 from grader.common.errors import DISK_FULL, CourseError, TaskFailed
 from grader.common.files import write_whole
@@ -67,8 +67,8 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
         try:
             packages = {name: course.packages(name) for name in course.assignments()}
             asked_for = {each for several in packages.values() for each in several}
-            found = list(look_into(source, Path(aside), asked_for))
-            visible = [each for each in found if not each.litter]
+            found = list(read_upload(source, Path(aside), asked_for))
+            visible = [each for each in found if not each.is_litter]
             hand_ins, rest = match(
                 visible,
                 packages,
@@ -76,7 +76,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 students=known_students(course),
                 file_times=file_times,
             )
-            problems = StudentNumbers(course).take(hand_ins)
+            problems = StudentNumbers(course).check_and_store(hand_ins)
             for each, problem in zip(hand_ins, problems, strict=True):
                 yield _row(course, each, problem, grades)
         except OSError as error:
@@ -87,9 +87,11 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 'the same again'
             ) from None
         for left in sorted(rest, key=lambda left: left.incoming.parts):
-            yield FileOutcome(left.incoming.path, LEFT if left.matters else UNUSED, left.reason)
+            yield FileOutcome(
+                left.incoming.path, LEFT if left.needs_attention else UNUSED, left.reason
+            )
         for incoming in found:
-            if incoming.litter:
+            if incoming.is_litter:
                 yield FileOutcome(incoming.path, UNUSED, 'hidden, or left behind by a program')
 
 
@@ -108,7 +110,7 @@ def _row(
     course: Course, each: MatchedFile, problem: str, grades: Callable[[], list[CellScore]]
 ) -> FileOutcome:
     try:
-        outcome, reason = (LEFT, problem) if problem else take(course, each, grades)
+        outcome, reason = (LEFT, problem) if problem else store_submission(course, each, grades)
         if not problem and each.remark:
             reason = f'{reason}; {each.remark}' if reason else each.remark
     except OSError as error:
@@ -121,7 +123,7 @@ def _row(
     return FileOutcome(each.notebook.path, outcome, reason, *whose, each.handed_in)
 
 
-def take(
+def store_submission(
     course: Course, each: MatchedFile, grades: Callable[[], list[CellScore]]
 ) -> tuple[str, str]:
     """Copy a submission to its folder in submitted/; return the outcome and its reason."""
@@ -130,7 +132,9 @@ def take(
     files = dict(_files(each))
     came = digests(files)
     if not place.exists():
-        put_whole(writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place)
+        put_atomically(
+            writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place
+        )
         return NEW, ''
     there, when = contents(place), date_of(place / TIMESTAMP)
     if came == there:
@@ -146,11 +150,13 @@ def take(
             ),
             shelf,
         )
-        return EARLIER, f'a later one is there already; kept in {_shown(kept, course)}'
+        return EARLIER, f'a later one is there already; kept in {_path_in_messages(kept, course)}'
     if there not in contents_of_earlier(shelf):  # else a run was killed right after keeping it
         put_numbered(lambda folder: _copy_all(course, each, folder, grades), shelf)
-    put_whole(writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place)
-    return AGAIN, f'the one before and its grade are kept in {_shown(shelf, course)}'
+    put_atomically(
+        writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place
+    )
+    return AGAIN, f'the one before and its grade are kept in {_path_in_messages(shelf, course)}'
 
 
 def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:
@@ -173,5 +179,5 @@ def _copy_all(
     write_whole(folder / 'scores.csv', as_csv(course, theirs))
 
 
-def _shown(path: Path, course: Course) -> str:
+def _path_in_messages(path: Path, course: Course) -> str:
     return str(path.relative_to(course.gradebook.parent))

@@ -17,7 +17,7 @@ MAX_COLUMNS = 120
 """The most columns of a path: it can have 5,000 characters, and widens all lines of a table."""
 
 
-def lines(rows: Iterable[FileOutcome], source: Path) -> Iterator[str]:
+def table_lines(rows: Iterable[FileOutcome], source: Path) -> Iterator[str]:
     """Yield the lines of the report: what was taken, what was not and why, and how many."""
     rows = list(rows)
     if not rows:

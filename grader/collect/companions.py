@@ -7,12 +7,12 @@ from pathlib import Path
 
 from grader.collect.incoming import Incoming
 from grader.collect.naming import Owner
-from grader.collect.owners import why_not_theirs
+from grader.collect.owners import foreign_file_reason
 from grader.collect.package_folders import (
     ChosenFiles,
     IncomingPackage,
-    choose,
-    first_of,
+    choose_files,
+    first_package_of,
     number_of,
 )
 from grader.common.dates import date_of
@@ -35,19 +35,19 @@ class Companions:
     foreign: Mapping[Incoming, str]
     """Files beside it that another user put there, with the reason why they are not taken."""
 
-    def extra(self) -> dict[str, Path]:
+    def extra_files(self) -> dict[str, Path]:
         """Return modules, by name, and files of packages, by path in the submission."""
         extra = {name: each.readable for name, each in self.modules.items()}
         for _, chosen in self.packages.values():
             extra |= chosen.taken
         return extra
 
-    def changed(self) -> list[datetime]:
+    def change_times(self) -> list[datetime]:
         """Return the change times (ctime) of the files that students themselves put there."""
         of_modules = [each.changed for each in self.modules.values() if each.changed]
         return of_modules + [at for _, chosen in self.packages.values() for at in chosen.changed]
 
-    def stamped(self) -> datetime | None:
+    def timestamp(self) -> datetime | None:
         """Return the time in timestamp.txt, unless a student wrote that file."""
         return date_of(self.stamp.readable) if self.stamp and not self.stamp.login else None
 
@@ -56,7 +56,7 @@ class Companions:
         chosen = {name: files for name, (_, files) in self.packages.items()}
         return tuple(clause for name, files in chosen.items() for clause in files.clauses(name))
 
-    def used(self) -> set[Incoming]:
+    def used_files(self) -> set[Incoming]:
         """Return the files beside the notebook that are used with it."""
         is_date = self.stamp is not None and date_of(self.stamp.readable) is not None
         others = self.stamp if is_date else None, self.secret
@@ -76,20 +76,24 @@ def find_companions(
     `asked_for` are the names of the packages that are handed in with it.
     """
     has_folder = bool(owner.by_folder or notebook.archive)
-    reasons = {each: why_not_theirs(each, owner.student_id) for each in beside.values()}
+    reasons = {each: foreign_file_reason(each, owner.student_id) for each in beside.values()}
     foreign = {each: why for each, why in reasons.items() if why} if has_folder else {}
     files = {name: each for name, each in beside.items() if has_folder and each not in foreign}
     is_believed = not (notebook.archive or owner.label)
     number = '' if has_folder else number_of(notebook)
     found = {
-        name: first_of(owner.student_id, packages.get((name, notebook.parts[:-1], number), ()))
+        name: first_package_of(
+            owner.student_id, packages.get((name, notebook.parts[:-1], number), ())
+        )
         for name in asked_for
         if number or has_folder
     }
     return Companions(
         modules={n: e for n, e in files.items() if n.endswith('.py') and not problem_of_id(n)},
         packages={
-            n: (there, choose(there, owner.student_id)) for n, there in found.items() if there
+            n: (there, choose_files(there, owner.student_id))
+            for n, there in found.items()
+            if there
         },
         stamp=files.get(TIMESTAMP) if is_believed else None,
         secret=files.get(SECRET) if is_believed else None,

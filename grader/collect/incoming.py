@@ -38,7 +38,7 @@ class Incoming:
         return self.file
 
     @property
-    def litter(self) -> bool:
+    def is_litter(self) -> bool:
         """Whether a program left it there, such as an editor or a desktop."""
         hidden = any(part.startswith('.') or part in LITTER for part in self.parts)
         return hidden and not self.problem

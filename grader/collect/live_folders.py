@@ -80,7 +80,7 @@ class LiveFolder:
             if self.left.files == -1:
                 yield Incoming(parts, problem='too many files: this one and more were not read')
             return
-        if (bare := Incoming(parts)).litter:
+        if (bare := Incoming(parts)).is_litter:
             yield bare
             return
         try:

@@ -11,9 +11,14 @@ from grader.collect.companions import Companions, find_companions
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.naming import Owner
 from grader.collect.owners import find_owners
-from grader.collect.package_folders import NO_NOTEBOOK, grouped, matters, split
+from grader.collect.package_folders import (
+    NO_NOTEBOOK,
+    group_by_key,
+    needs_attention,
+    split_packages,
+)
 from grader.collect.platforms import PlatformLabel
-from grader.collect.uploads import wanted
+from grader.collect.uploads import is_wanted
 from grader.common.dates import date_of
 from grader.notebook.submission import SECRET, TIMESTAMP
 
@@ -45,7 +50,7 @@ class UntakenFile:
 
     incoming: Incoming
     reason: str
-    matters: bool = True
+    needs_attention: bool = True
     """Whether a person should look at it; if not, it would not be graded anyway."""
 
 
@@ -64,15 +69,17 @@ def match(
     modification time.
     """
     asked_for = {name: tuple(several) for name, several in (packages or {}).items()}
-    found, folders = split(found, {each for several in asked_for.values() for each in several})
-    beside_notebooks = grouped(folders)
+    found, folders = split_packages(
+        found, {each for several in asked_for.values() for each in several}
+    )
+    beside_notebooks = group_by_key(folders)
     rest = [UntakenFile(each, each.problem) for each in found if each.problem]
     beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
     for each in (each for each in found if not each.problem and not is_notebook(each)):
-        if wanted(each.parts[-1:]):
+        if is_wanted(each.parts[-1:]):
             beside[each.parts[:-1]][each.parts[-1]] = each
         else:
-            rest.append(UntakenFile(each, 'neither a notebook nor Python', matters=False))
+            rest.append(UntakenFile(each, 'neither a notebook nor Python', needs_attention=False))
     owners, remarks, problems = find_owners(found, assignments, students)
     rest += [UntakenFile(each, problem) for each, problem in problems.items()]
     hand_ins, used, others = [], set[Incoming](), dict[Incoming, str]()
@@ -89,29 +96,31 @@ def match(
                 student_id=owner.student_id,
                 assignment=owner.assignment,
                 notebook=notebook,
-                extra=with_it.extra(),
-                handed_in=_handed_in(notebook, owner, with_it, file_times=file_times),
+                extra=with_it.extra_files(),
+                handed_in=_submission_time(notebook, owner, with_it, file_times=file_times),
                 label=owner.label,
                 remark=remarks[notebook],
                 secret=with_it.secret.readable if with_it.secret else None,
                 left_out=with_it.left_out(),
             )
         )
-        used |= with_it.used()
+        used |= with_it.used_files()
         others |= with_it.foreign
         for there, chosen in with_it.packages.values():
-            rest += [UntakenFile(e, why, matters=matters(why)) for e, why in chosen.left]
+            rest += [
+                UntakenFile(e, why, needs_attention=needs_attention(why)) for e, why in chosen.left
+            ]
             folders = [each for each in folders if each is not there]
     rest += [UntakenFile(each, NO_NOTEBOOK) for folder in folders for each in folder.members]
     rest += [UntakenFile(each, why) for each, why in others.items()]
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
     for folder, files in beside.items():
         left = (each for each in files.values() if each not in used and each not in others)
-        rest += [_not_taken(each, in_upload=folder in uploads) for each in left]
-    return _in_order(hand_ins, rest), rest
+        rest += [_unused_file(each, in_upload=folder in uploads) for each in left]
+    return _sort_hand_ins(hand_ins, rest), rest
 
 
-def _handed_in(
+def _submission_time(
     notebook: Incoming, owner: Owner, with_it: Companions, *, file_times: bool
 ) -> datetime | None:
     """Return when it was handed in; None if nothing says so.
@@ -120,21 +129,23 @@ def _handed_in(
     could be edited later: then only the files' change times (ctime) count.
     """
     if notebook.changed:
-        return max([notebook.changed, *with_it.changed()])
-    told = owner.handed_in or with_it.stamped()
+        return max([notebook.changed, *with_it.change_times()])
+    told = owner.handed_in or with_it.timestamp()
     claimed = notebook.modified if file_times else None
-    return max([*with_it.changed(), *([told] if told else [])], default=claimed)
+    return max([*with_it.change_times(), *([told] if told else [])], default=claimed)
 
 
-def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
+def _unused_file(each: Incoming, *, in_upload: bool) -> UntakenFile:
     """Return why a file that is beside notebooks does not belong to any of them."""
     if each.parts[-1] == SECRET:
         return UntakenFile(
-            each, 'it belongs to the exchange, but to no submission here', matters=False
+            each, 'it belongs to the exchange, but to no submission here', needs_attention=False
         )
     if each.parts[-1] != TIMESTAMP:
         return UntakenFile(
-            each, 'it is beside no notebook, or beside those of several students', matters=False
+            each,
+            'it is beside no notebook, or beside those of several students',
+            needs_attention=False,
         )
     if each.archive or in_upload:
         where = 'archive' if each.archive else 'upload'
@@ -146,7 +157,7 @@ def _not_taken(each: Incoming, *, in_upload: bool) -> UntakenFile:
     return UntakenFile(each, 'it is beside no notebook of one student')
 
 
-def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[MatchedFile]:
+def _sort_hand_ins(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[MatchedFile]:
     """Sort by student, assignment and time; submissions in no clear order are added to `rest`."""
     whose: dict[tuple[str, str], list[MatchedFile]] = defaultdict(list)
     for each in hand_ins:
@@ -160,7 +171,8 @@ def _in_order(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[Matc
         if _all_alike(several):
             ordered.append(several[0])
             rest += [
-                UntakenFile(each.notebook, 'the same again', matters=False) for each in several[1:]
+                UntakenFile(each.notebook, 'the same again', needs_attention=False)
+                for each in several[1:]
             ]
             continue
         others = f'one of {len(several)} notebooks for {assignment} by {student}'

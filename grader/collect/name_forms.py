@@ -15,15 +15,15 @@ _BETWEEN = '_+- .'
 class AssignmentName:
     """A name that ends with that of an assignment."""
 
-    who: str
-    what: str
+    student: str
+    assignment: str
 
 
 @dataclass(frozen=True)
 class ExchangeName(AssignmentName):
     """The name of a folder in nbgrader's exchange."""
 
-    when: str
+    time: str
 
 
 class NameForms:
@@ -33,30 +33,34 @@ class NameForms:
         self._known = sorted(assignments, key=len, reverse=True)
         one_of = '|'.join(map(re.escape, self._known)) or '(?!)'
         self._exchange = re.compile(
-            rf'(?P<who>.+)\+(?P<what>{one_of})\+(?P<when>\d{{4}}-[^+]+)(\+[\w=-]+)?'
+            rf'(?P<student>.+)\+(?P<assignment>{one_of})\+(?P<time>\d{{4}}-[^+]+)(\+[\w=-]+)?'
         )
 
-    def named(self, name: str) -> AssignmentName | None:
+    def parse_assignment_name(self, name: str) -> AssignmentName | None:
         """Split STUDENT_ASSIGNMENT or STUDENT_ASSIGNMENT-1; None if the name has another form.
 
         A regular expression would take time proportional to the square of the name's length.
         """
         for whole in (name, re.sub(r'(?<=\w)-\d+$', '', name)):
-            for what in self._known:
-                who = whole.removesuffix(what)
-                if who != whole and len(who) > 1 and who[-1] in _BETWEEN:
-                    return AssignmentName(who.rstrip(_BETWEEN) or who[0], what)
+            for assignment in self._known:
+                student = whole.removesuffix(assignment)
+                if student != whole and len(student) > 1 and student[-1] in _BETWEEN:
+                    return AssignmentName(student.rstrip(_BETWEEN) or student[0], assignment)
         return None
 
-    def exchanged(self, name: str) -> ExchangeName | None:
+    def parse_exchange_name(self, name: str) -> ExchangeName | None:
         """Split STUDENT+ASSIGNMENT+TIME; None if the name has another form."""
         found = self._exchange.fullmatch(name)
-        return ExchangeName(found['who'], found['what'], found['when']) if found else None
+        return ExchangeName(**found.groupdict()) if found else None
 
-    def who(self, name: str) -> str:
+    def student_of(self, name: str) -> str:
         """Return the student whom the name of a folder or an archive may contain."""
-        found = label_in(name) or self.exchanged(name) or self.named(bare(name))
-        return found.who if found else bare(name)
+        found = (
+            label_in(name)
+            or self.parse_exchange_name(name)
+            or self.parse_assignment_name(strip_archive_ending(name))
+        )
+        return found.student if found else strip_archive_ending(name)
 
 
 def stem_of(name: str) -> str:
@@ -64,7 +68,7 @@ def stem_of(name: str) -> str:
     return re.sub(r' \(\d+\)$', '', name[: -len('.ipynb')])
 
 
-def bare(name: str) -> str:
+def strip_archive_ending(name: str) -> str:
     """Return a folder's name, or an archive's without its ending and a browser's ` (1)`."""
     if not ARCHIVE.search(name):
         return name

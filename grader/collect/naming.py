@@ -11,7 +11,7 @@ from datetime import datetime
 
 from grader.collect.archive_entries import ARCHIVE
 from grader.collect.incoming import Incoming, is_notebook
-from grader.collect.name_forms import NameForms, bare, shared_folders, stem_of
+from grader.collect.name_forms import NameForms, shared_folders, stem_of, strip_archive_ending
 from grader.collect.platforms import PlatformLabel, label_in, student_in
 from grader.common.dates import date_in
 from grader.common.student_names import UnclearOwner, is_nobody, same_person
@@ -58,12 +58,12 @@ class Naming:
         notebooks = [each for each in found if is_notebook(each)]
         self._by_platform = self._all_by_platform(notebooks, list(students))
         self._shared = len(shared_folders([each.parts[:-1] for each in notebooks]))
-        named = (self._forms.named(stem_of(each.parts[-1])) for each in notebooks)
-        self._several = len({name.who for name in named if name}) > 1
+        named = (self._forms.parse_assignment_name(stem_of(each.parts[-1])) for each in notebooks)
+        self._several = len({name.student for name in named if name}) > 1
 
     def owner(self, each: Incoming) -> Owner:
         """Return the owner of a notebook. Raises UnclearOwner."""
-        at = self._decides(each)
+        at = self._deciding_index(each)
         if at is None:
             return self._owner_by_file_name(each)
         name, above, inside = each.parts[at], each.parts[:at], each.parts[at + 1 : -1]
@@ -76,20 +76,21 @@ class Naming:
             inside = (_AGAIN.sub('', label.rest), *inside)
         if label and label.platform.numbers_copies:
             stem = _AGAIN.sub('', stem)
-        if exchanged := self._forms.exchanged(name):
-            if stem != exchanged.what or inside:
-                raise UnclearOwner(f'in the exchange, {exchanged.what}.ipynb was expected here')
-            when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', exchanged.when))
-            return Owner(student_in(exchanged.who), stem, True, when, above=above)
+        if parsed := self._forms.parse_exchange_name(name):
+            if stem != parsed.assignment or inside:
+                raise UnclearOwner(f'in the exchange, {parsed.assignment}.ipynb was expected here')
+            when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', parsed.time))
+            return Owner(student_in(parsed.student), stem, True, when, above=above)
         assignment = self._assignment(stem, each.parts[:-1])
-        student = student_in(self._forms.who(name))
+        student = student_in(self._forms.student_of(name))
         if label and label.platform.names_files_only and not ARCHIVE.search(name):
             self._expect_no_class(student, label, each.parts[at + 1 : -1])
-        if (named := self._forms.named(stem)) and not same_person(named.who, student):
+        named = self._forms.parse_assignment_name(stem)
+        if named and not same_person(named.student, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             where = f'in what {student} handed in' if label else where
             raise UnclearOwner(
-                f"it is named after {named.who}, and {where}: rename it if it is {student}'s, "
+                f"it is named after {named.student}, and {where}: rename it if it is {student}'s, "
                 'or else collect it by itself'
             )
         return Owner(
@@ -105,9 +106,9 @@ class Naming:
     def claims(self, owner: Owner) -> Iterator[tuple[str, bool]]:
         """Yield other students named in an upload, and if the name has a student's form."""
         for name in owner.inside:
-            who = self._forms.who(name)
+            who = self._forms.student_of(name)
             if not self._may_name(who, owner.student_id):
-                yield who, who != bare(name)
+                yield who, who != strip_archive_ending(name)
 
     def _may_name(self, who: str, *students: str) -> bool:
         """Whether a folder's name may belong to these students: it does not name another one."""
@@ -116,11 +117,11 @@ class Naming:
 
     def _expect_no_class(self, student: str, label: PlatformLabel, folders: Sequence[str]) -> None:
         """Raise UnclearOwner if a folder named like an upload may contain a class."""
-        for who in map(self._forms.who, folders):
+        for who in map(self._forms.student_of, folders):
             if not self._may_name(who, student, label.rest):
                 raise UnclearOwner(f'it may be of {student} or of {who}: {_SEVERAL}')
 
-    def _decides(self, each: Incoming) -> int | None:
+    def _deciding_index(self, each: Incoming) -> int | None:
         """Return the index of the path component that decides; None if only the file's name does.
 
         Raises UnclearOwner if several may.
@@ -136,16 +137,16 @@ class Naming:
                 raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
             return len(folders) if label_in(each.parts[-1]) else None
         first, *others = candidates
-        if label_in(folders[first]) or self._forms.exchanged(folders[first]):
+        if label_in(folders[first]) or self._forms.parse_exchange_name(folders[first]):
             return first
-        names = [self._forms.who(folders[at]) for at in (first, *others)]
+        names = [self._forms.student_of(folders[at]) for at in (first, *others)]
         if not all(same_person(name, names[0]) for name in names):
             raise UnclearOwner(f'it may be of {" or of ".join(names)}: {_SEVERAL}')
         return first
 
     def _candidates(self, folders: Sequence[str], start: int) -> list[int]:
         """Return the indexes of folders, from `start` on, that may be named after a student."""
-        names = [(at, bare(folder)) for at, folder in enumerate(folders) if at >= start]
+        names = [(at, strip_archive_ending(f)) for at, f in enumerate(folders) if at >= start]
         return [at for at, name in names if name not in self._known and not is_nobody(name)]
 
     def _owner_by_file_name(self, each: Incoming) -> Owner:
@@ -153,23 +154,23 @@ class Naming:
         assignment = self._assignment(stem, each.parts[:-1])
         if stem in self._known:
             raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
-        named = self._forms.named(stem)
+        named = self._forms.parse_assignment_name(stem)
         assert named is not None  # or _assignment would have raised
-        student = student_in(named.who)
+        student = student_in(named.student)
         return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
 
     def _assignment(self, stem: str, folders: Sequence[str]) -> str:
         """Return the assignment that a file is named after. Raises UnclearOwner."""
-        named = self._forms.named(stem)
+        named = self._forms.parse_assignment_name(stem)
         if stem not in self._known and not named:
             near = [name for name in self._known if name.casefold() in stem.casefold()]
             known = ', '.join(sorted(near or self._known))
             raise UnclearOwner(f'named after no assignment: {EXPECTED}, with {known}')
-        assignment = named.what if named else stem
+        assignment = named.assignment if named else stem
         for folder in reversed(folders):
-            name = bare(folder)
-            of = self._forms.named(name)
-            other = name if name in self._known else of.what if of else assignment
+            name = strip_archive_ending(folder)
+            of = self._forms.parse_assignment_name(name)
+            other = name if name in self._known else of.assignment if of else assignment
             if other != assignment:
                 raise UnclearOwner(f'it is in a folder of another assignment, {other}')
         return assignment
@@ -193,6 +194,7 @@ class Naming:
     def _first_by_platform(self, each: Incoming) -> int | None:
         """Return the index of the outermost component that a platform or the exchange named."""
         for at, part in enumerate(each.parts[: each.archive] or each.parts):
-            if label_in(part) or (at < len(each.parts) - 1 and self._forms.exchanged(part)):
+            is_folder = at < len(each.parts) - 1
+            if label_in(part) or (is_folder and self._forms.parse_exchange_name(part)):
                 return at
         return None

@@ -18,28 +18,28 @@ def find_owners(
     naming = Naming(found, assignments, students)
     for each in filter(is_notebook, found):
         try:
-            owners[each] = _checked(each, naming.owner(each))
+            owners[each] = _require_same_user(each, naming.owner(each))
         except UnclearOwner as unclear:
             problems[each] = str(unclear)
     numbers = defaultdict(set)
     for owner in owners.values():
-        numbers[_namesakes(owner)].add(owner.label and owner.label.number)
+        numbers[_namesake_key(owner)].add(owner.label and owner.label.number)
     known = defaultdict(set)
     for student in {*students, *(owner.student_id for owner in owners.values())}:
         for spelling in spellings(student):
             known[spelling].add(student)
     remarks = {}
     for each, owner in owners.items():
-        remarks[each], problem = _claims(owner, naming, known)
-        if len(numbers[_namesakes(owner)]) > 1:
-            problem = _of_several(owner)
+        remarks[each], problem = _check_claims(owner, naming, known)
+        if len(numbers[_namesake_key(owner)]) > 1:
+            problem = _several_students_problem(owner)
         if problem:
             problems[each] = problem
         remarks[each] = remarks[each] or _other_spelling(owner.student_id, known)
     return {e: owner for e, owner in owners.items() if e not in problems}, remarks, problems
 
 
-def why_not_theirs(each: Incoming, student: str) -> str:
+def foreign_file_reason(each: Incoming, student: str) -> str:
     """Return why a file beside a student's notebook is not taken with it; '' if it is taken.
 
     Other users may have write access to the teacher's folder.
@@ -49,7 +49,7 @@ def why_not_theirs(each: Incoming, student: str) -> str:
     return f'it is beside the notebook of {student}, and the user {each.login} put it there'
 
 
-def _checked(each: Incoming, owner: Owner) -> Owner:
+def _require_same_user(each: Incoming, owner: Owner) -> Owner:
     """Return the owner. Raises UnclearOwner if the file belongs to a user of another name."""
     if each.login in ('', owner.student_id):
         return owner
@@ -59,7 +59,7 @@ def _checked(each: Incoming, owner: Owner) -> Owner:
     )
 
 
-def _namesakes(owner: Owner) -> tuple:
+def _namesake_key(owner: Owner) -> tuple:
     """Return a key; two owners with the same key and different numbers are two persons.
 
     Moodle numbers each student of one download; Canvas's number is the same in each download.
@@ -74,7 +74,7 @@ def _namesakes(owner: Owner) -> tuple:
     return (owner.student_id, owner.above, owner.assignment, platform)
 
 
-def _of_several(owner: Owner) -> str:
+def _several_students_problem(owner: Owner) -> str:
     assert owner.label is not None  # only a label has a number
     return (
         f'there are several {owner.student_id} with different numbers, this one is '
@@ -88,7 +88,7 @@ def _other_spelling(student: str, known: Mapping[str, set[str]]) -> str:
     return f'not the same as {", ".join(sorted(alike))}: if it is, rename one' if alike else ''
 
 
-def _claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
+def _check_claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
     """Compare the names inside an upload with its owner's; return a remark and a problem.
 
     `known` has all students, by the spellings of their names.

@@ -10,7 +10,7 @@ from my_robot_basics.session import package_files
 
 from grader.collect.archive_entries import ARCHIVE
 from grader.collect.incoming import Incoming, is_notebook
-from grader.collect.owners import why_not_theirs
+from grader.collect.owners import foreign_file_reason
 from grader.collect.platforms import label_in
 from grader.collect.uploads import package_in
 
@@ -57,7 +57,7 @@ class ChosenFiles:
         return [start + clause for clause in package_files.first_clauses(told)]
 
 
-def split(
+def split_packages(
     found: Sequence[Incoming], packages: Collection[str]
 ) -> tuple[list[Incoming], list[IncomingPackage]]:
     """Separate packages from other files: a package is a folder of such a name beside a notebook.
@@ -82,13 +82,15 @@ def number_of(notebook: Incoming) -> str:
     return label.number if label else ''
 
 
-def choose(package: IncomingPackage, student: str) -> ChosenFiles:
+def choose_files(package: IncomingPackage, student: str) -> ChosenFiles:
     """Choose the files of a student's package: the same that a build in the notebook uses."""
     chosen = ChosenFiles()
     files: dict[str, Incoming] = {}
     for each in package.members:
         parts = each.parts[len(package.root) :]
-        if reason := _why_not(each, parts, package.root) or why_not_theirs(each, student):
+        if reason := _left_out_reason(each, parts, package.root) or foreign_file_reason(
+            each, student
+        ):
             chosen.left.append((each, reason))
             continue
         if former := files.get('/'.join(parts)):
@@ -107,7 +109,7 @@ def choose(package: IncomingPackage, student: str) -> ChosenFiles:
     return chosen
 
 
-def matters(reason: str) -> bool:
+def needs_attention(reason: str) -> bool:
     """Whether a person should look at a file that was left out: not if a program made it."""
     return not reason.startswith(('hidden', 'left behind', 'made by'))
 
@@ -131,7 +133,7 @@ def _package(path: tuple[str, ...], members: list[Incoming]) -> IncomingPackage:
     return IncomingPackage(name, tuple(at), label.number if label else '', members, root)
 
 
-def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> str:
+def _left_out_reason(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> str:
     if each.problem:
         return each.problem
     if not parts or each.parts[: len(root)] != root:
@@ -143,7 +145,7 @@ def _why_not(each: Incoming, parts: tuple[str, ...], root: tuple[str, ...]) -> s
     return package_files.reason_left_out(parts)
 
 
-def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPackage]]:
+def group_by_key(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPackage]]:
     """Return packages by the key that they share with a notebook."""
     by_key: dict[tuple, list[IncomingPackage]] = defaultdict(list)
     for each in found:
@@ -151,7 +153,7 @@ def grouped(found: Sequence[IncomingPackage]) -> Mapping[tuple, list[IncomingPac
     return by_key
 
 
-def first_of(student: str, found: Sequence[IncomingPackage]) -> IncomingPackage | None:
+def first_package_of(student: str, found: Sequence[IncomingPackage]) -> IncomingPackage | None:
     """Return the first package with a file that may be the student's; else the first, if any."""
-    theirs = (p for p in found if not all(why_not_theirs(e, student) for e in p.members))
+    theirs = (p for p in found if not all(foreign_file_reason(e, student) for e in p.members))
     return next(theirs, next(iter(found), None))

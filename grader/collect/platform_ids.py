@@ -38,7 +38,7 @@ class StudentNumbers:
         """Return a student's numbers in an assignment, by platform."""
         return self._kept.get(student_id, {}).get(assignment, {})
 
-    def take(self, hand_ins: Sequence[MatchedFile]) -> list[str]:
+    def check_and_store(self, hand_ins: Sequence[MatchedFile]) -> list[str]:
         """Store the students' numbers; return for each submission why it is not taken, or ''.
 
         It is not taken if students of the same name have several numbers: a submission must never
@@ -46,12 +46,14 @@ class StudentNumbers:
         """
         came = defaultdict(set)
         for each in hand_ins:
-            if label := _numbered(each):
-                came[_same(each)].add(label.number)
-        problems = [_problem(each, came[_same(each)] | self._known(each)) for each in hand_ins]
+            if label := _label_with_number(each):
+                came[_number_key(each)].add(label.number)
+        problems = [
+            _problem(each, came[_number_key(each)] | self._known(each)) for each in hand_ins
+        ]
         changed = False
         for each, problem in zip(hand_ins, problems, strict=True):
-            if (label := _numbered(each)) and not problem:
+            if (label := _label_with_number(each)) and not problem:
                 theirs = self._kept.setdefault(each.student_id, {}).setdefault(each.assignment, {})
                 changed |= theirs.get(label.platform.name) != label.number
                 theirs[label.platform.name] = label.number
@@ -62,7 +64,7 @@ class StudentNumbers:
 
     def _known(self, each: MatchedFile) -> set[str]:
         """Return the numbers that a student of that name had before."""
-        if (label := _numbered(each)) is None:
+        if (label := _label_with_number(each)) is None:
             return set()
         platform, theirs = label.platform, self._kept.get(each.student_id, {})
         if platform.number_of == 'assignment':
@@ -70,21 +72,21 @@ class StudentNumbers:
         return {numbers[platform.name] for numbers in theirs.values() if platform.name in numbers}
 
 
-def _numbered(each: MatchedFile) -> PlatformLabel | None:
+def _label_with_number(each: MatchedFile) -> PlatformLabel | None:
     """Return the submission's platform label if it has a number that is kept; else None."""
     return each.label if each.label and each.label.platform.number_of != 'download' else None
 
 
-def _same(each: MatchedFile) -> tuple[str, ...]:
+def _number_key(each: MatchedFile) -> tuple[str, ...]:
     """Return a key; submissions with the same key are expected to have the same number."""
-    if (label := _numbered(each)) is None:
+    if (label := _label_with_number(each)) is None:
         return ()
     of = each.assignment if label.platform.number_of == 'assignment' else ''
     return label.platform.name, each.student_id, of
 
 
 def _problem(each: MatchedFile, numbers: set[str]) -> str:
-    label = _numbered(each)
+    label = _label_with_number(each)
     if label is None or numbers == {label.number}:
         return ''
     platform, who = label.platform.name.capitalize(), each.student_id

@@ -16,7 +16,7 @@ class Platform:
     name: str
     """Its key in gradebook/numbers.json: 'moodle'."""
     form: re.Pattern[str]
-    """What it writes before the name of a file, or as a folder's name. Its groups are `who`,
+    """What it writes before the name of a file, or as a folder's name. Its groups are `student`,
     `number`, `rest` (what the student called the file; none in a folder's name), perhaps `time`.
     """
     number_of: Literal['student', 'assignment', 'download']
@@ -38,7 +38,7 @@ PLATFORMS = (
     Platform(
         name='moodle',
         form=re.compile(
-            r'(?P<who>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)_?(?P<rest>.*)'
+            r'(?P<student>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)_?(?P<rest>.*)'
         ),
         number_of='assignment',
         is_plain=True,
@@ -46,7 +46,7 @@ PLATFORMS = (
     Platform(
         name='canvas',
         form=re.compile(
-            r'(?P<who>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})_(?P<rest>.+)', re.I
+            r'(?P<student>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})_(?P<rest>.+)', re.I
         ),
         number_of='student',
         numbers_copies=True,
@@ -56,7 +56,7 @@ PLATFORMS = (
     Platform(
         name='blackboard',
         form=re.compile(
-            r'(?P<number>.+?_(?P<who>[^_]+))_attempt_(?P<time>\d{4}(-\d\d){5})(_(?P<rest>.*))?'
+            r'(?P<number>.+?_(?P<student>[^_]+))_attempt_(?P<time>\d{4}(-\d\d){5})(_(?P<rest>.*))?'
         ),
         number_of='download',
         time_format='%Y-%m-%d-%H-%M-%S',
@@ -73,7 +73,7 @@ class PlatformLabel:
 
     platform: Platform
     number: str
-    who: str
+    student: str
     rest: str
     """The student's name for the file; '' in a folder's name."""
     handed_in: datetime | None = None
@@ -87,7 +87,7 @@ def label_in(name: str) -> PlatformLabel | None:
     platform whose student name ends first wrote the beginning, which the student can't choose.
     """
     found = [
-        (match.end('who'), place, match)
+        (match.end('student'), place, match)
         for place, platform in enumerate(PLATFORMS)
         if (match := platform.form.fullmatch(name))
         and not (platform.names_files_only and _is_class(match))
@@ -95,16 +95,16 @@ def label_in(name: str) -> PlatformLabel | None:
     if not found:
         return None
     _, place, match = min(found, key=lambda each: each[:2])
-    platform, who, number = PLATFORMS[place], match['who'], match['number']
-    who = f'{who} {number}' if who in _ANONYMOUS else who
-    return PlatformLabel(platform, number, who, match['rest'] or '', _time(platform, match))
+    platform, student, number = PLATFORMS[place], match['student'], match['number']
+    student = f'{student} {number}' if student in _ANONYMOUS else student
+    return PlatformLabel(platform, number, student, match['rest'] or '', _time(platform, match))
 
 
 def student_in(name: str) -> str:
     """Return the student's name that a name contains. Raises UnclearOwner."""
     name = unicodedata.normalize('NFC', name)
     if label := label_in(name):
-        name = label.who
+        name = label.student
     name = name.strip(' ')
     if is_nobody(name):
         raise UnclearOwner(f'{name!r} names work or a class: rename it after a student')
@@ -120,7 +120,7 @@ def _is_class(found: re.Match[str]) -> bool:
     """
     number, other = found['number'], found.groupdict().get('upload', '')
     of_years = len(number) == len(other) == 4 and int(other) - int(number) in (0, 1)
-    return of_years or is_nobody(found['who'])
+    return of_years or is_nobody(found['student'])
 
 
 def _time(platform: Platform, found: re.Match[str]) -> datetime | None:

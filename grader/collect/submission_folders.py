@@ -132,11 +132,11 @@ def put_numbered(write: Callable[[Path], None], shelf: Path) -> Path:
     """Put a folder beside the earlier ones, with the next number; return its path."""
     numbers = [int(path.name) for path in shelf.glob('*') if path.name.isdecimal()]
     place = shelf / str(max(numbers, default=0) + 1)
-    put_whole(write, place)
+    put_atomically(write, place)
     return place
 
 
-def put_whole(write: Callable[[Path], None], place: Path) -> None:
+def put_atomically(write: Callable[[Path], None], place: Path) -> None:
     """Write a folder under another name, then rename it: a reader never finds half of it."""
     place.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix='.new-', dir=place.parents[2]) as aside:

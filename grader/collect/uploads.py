@@ -29,7 +29,7 @@ OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNO
 """File name endings of archives that can't be read here."""
 
 
-def look_into(source: Path, aside: Path, packages: Collection[str] = ()) -> Iterator[Incoming]:
+def read_upload(source: Path, aside: Path, packages: Collection[str] = ()) -> Iterator[Incoming]:
     """Yield all files in a folder or an archive; `aside` is an empty folder for copies of them.
 
     All files of ROS packages are read if they are in `packages`, those that lessons need. Links
@@ -48,40 +48,40 @@ def look_into(source: Path, aside: Path, packages: Collection[str] = ()) -> Iter
         whoever = (source.stat().st_uid,)  # the person who collects it chose this file
         found = live.read_entry(source.resolve().parent, name, trusted=whoever)
     elif source.is_file() and ARCHIVE.search(source.name):
-        found = opener.apart(
-            'inside', Incoming((), source), source.name, aside, left, LIMITS_OF_ALL
+        found = opener.read_in_process(
+            'unpack_one', Incoming((), source), source.name, aside, left, LIMITS_OF_ALL
         )
     else:
         raise CourseError(
             f'{source} is {"another kind of file" if source.exists() else "not there"}: expected '
             'a folder, a notebook or an archive (.zip, .tar, .tar.gz)'
         )
-    yield from opener.unpacked(found, aside, left)
+    yield from opener.unpack_uploads(found, aside, left)
 
 
-def look_into_entry(
+def read_inbound_entry(
     folder: Path, name: str, aside: Path, packages: Collection[str] = ()
 ) -> Iterator[Incoming]:
-    """Yield all files of one entry in a folder, as `look_into` does."""
+    """Yield all files of one entry in a folder, as `read_upload` does."""
     opener = _Opener(frozenset(packages))
     found = LiveFolder(aside, UnpackLimits(**ONE), opener.is_wanted).read_entry(folder, name)
-    yield from opener.unpacked(found, aside, UnpackLimits(**ONE))
+    yield from opener.unpack_uploads(found, aside, UnpackLimits(**ONE))
 
 
-def read_apart(
+def read_archive_as_json(
     way: str, outer: dict, name: str, aside: str, left: dict, packages: list[str]
 ) -> dict:
-    """Read an archive in a separate process, called by `apart`; arguments and result are JSON."""
+    """Unpack an archive in the process that `read_in_process` uses; all values are JSON."""
     allowance, archive = UnpackLimits(**left), from_json(outer)
     opener = _Opener(frozenset(packages))
-    if way == 'inside':
-        found = opener.inside(archive, name, Path(aside), allowance)
+    if way == 'unpack_one':
+        found = opener.unpack_one(archive, name, Path(aside), allowance)
     else:
-        found = opener.opened(archive, Path(aside), allowance, nested=1)
+        found = opener.unpack_nested(archive, Path(aside), allowance, nested=1)
     return {'found': [as_json(each) for each in found], 'left': asdict(allowance)}
 
 
-def wanted(parts: tuple[str, ...], packages: Collection[str] = ()) -> bool:
+def is_wanted(parts: tuple[str, ...], packages: Collection[str] = ()) -> bool:
     """Whether a file of that path is read at all."""
     name = parts[-1]
     return (
@@ -108,31 +108,33 @@ class _Opener:
 
     def is_wanted(self, parts: tuple[str, ...]) -> bool:
         """Whether a file of that path is read at all."""
-        return wanted(parts, self.packages)
+        return is_wanted(parts, self.packages)
 
-    def unpacked(
+    def unpack_uploads(
         self, found: Iterator[Incoming], aside: Path, left: UnpackLimits
     ) -> Iterator[Incoming]:
         """Yield files; for an archive, the files in it."""
         for each in found:
-            if each.problem or each.litter or not ARCHIVE.search(each.parts[-1]):
-                yield from self.opened(each, aside, left, nested=1)
+            if each.problem or each.is_litter or not ARCHIVE.search(each.parts[-1]):
+                yield from self.unpack_nested(each, aside, left, nested=1)
             else:
                 part = left.part(**ONE)
                 before = replace(part)
                 name = each.parts[-1]
-                yield from self.apart('opened', each, name, aside, part, LIMITS_OF_ONE)
+                yield from self.read_in_process(
+                    'unpack_nested', each, name, aside, part, LIMITS_OF_ONE
+                )
                 left.less(before, part)
                 each.readable.unlink()
 
-    def apart(
+    def read_in_process(
         self, way: str, outer: Incoming, name: str, aside: Path, left: UnpackLimits, limits: Limits
     ) -> Iterator[Incoming]:
-        """Read an archive in a separate process: 'inside' it alone, 'opened' with nested ones."""
+        """Read an archive in a separate process, with one of the two methods below."""
         own = tempfile.mkdtemp(dir=aside)
         arguments = (way, as_json(outer), name, own, asdict(left), sorted(self.packages))
         try:
-            said = parse('grader.collect.uploads:read_apart', *arguments, limits=limits)
+            said = parse('grader.collect.uploads:read_archive_as_json', *arguments, limits=limits)
         except ParsingFailed as why:
             shutil.rmtree(own)
             yield replace(
@@ -145,11 +147,11 @@ class _Opener:
         vars(left).update(said['left'])
         yield from map(from_json, said['found'])
 
-    def opened(
+    def unpack_nested(
         self, each: Incoming, aside: Path, left: UnpackLimits, *, nested: int
     ) -> Iterator[Incoming]:
         """Yield a file; for an archive, the files in it."""
-        if each.problem or each.litter:
+        if each.problem or each.is_litter:
             yield each
         elif OTHER_ARCHIVE.search(each.parts[-1]) and not ARCHIVE.search(each.parts[-1]):
             yield replace(each, problem='an archive of another kind: ask for a .zip or .tar.gz')
@@ -160,11 +162,11 @@ class _Opener:
         else:
             part = left.part(**ONE)
             before = replace(part)
-            for inner in self.inside(each, each.parts[-1], aside, part):
-                yield from self.opened(inner, aside, part, nested=nested + 1)
+            for inner in self.unpack_one(each, each.parts[-1], aside, part):
+                yield from self.unpack_nested(inner, aside, part, nested=nested + 1)
             left.less(before, part)
 
-    def inside(
+    def unpack_one(
         self, outer: Incoming, name: str, aside: Path, left: UnpackLimits
     ) -> Iterator[Incoming]:
         """Yield the files in one archive; archives in it are not opened."""

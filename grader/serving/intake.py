@@ -7,12 +7,12 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from grader.collect.collect import take
+from grader.collect.collect import store_submission
 from grader.collect.incoming import Incoming
 from grader.collect.matching import MatchedFile, match
 from grader.collect.platform_ids import StudentNumbers
 from grader.collect.submission_folders import writer
-from grader.collect.uploads import look_into_entry
+from grader.collect.uploads import read_inbound_entry
 from grader.common.text import shorten, storable
 from grader.course import Course
 from grader.notebook.submission import LEFT_OUT, SECRET
@@ -39,16 +39,18 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
     with tempfile.TemporaryDirectory(prefix='.new-', dir=shelf) as aside:
         packages = {name: course.packages(name) for name in course.assignments()}
         asked_for = {each for several in packages.values() for each in several}
-        found = list(look_into_entry(inbound, entry.name, Path(aside), asked_for))
+        found = list(read_inbound_entry(inbound, entry.name, Path(aside), asked_for))
         hand_ins, rest = match(
-            [each for each in found if not each.litter],
+            [each for each in found if not each.is_litter],
             packages,
             packages=packages,
             students={*known_students(course), *(each.student_id for each in waiting)},
         )
         with gradebook_lock(course.gradebook):
-            problems = StudentNumbers(course).take(hand_ins)
-        reasons = [each.reason for each in rest if each.matters and _is_work(each.incoming)]
+            problems = StudentNumbers(course).check_and_store(hand_ins)
+        reasons = [
+            each.reason for each in rest if each.needs_attention and _is_work(each.incoming)
+        ]
         rows = []
         for each, problem in zip(hand_ins, problems, strict=True):
             problem = problem or _no_room_reason(course, each, waiting)
@@ -77,7 +79,9 @@ def put_in_place(course: Course, arrival: Arrival) -> tuple[str, str]:
     folder = course.gradebook / FOLDER / arrival.folder
     hand_in = _hand_in(folder, arrival)
     with gradebook_lock(course.gradebook):
-        return take(course, hand_in, lambda: records(course, only={arrival.submission_key}))
+        return store_submission(
+            course, hand_in, lambda: records(course, only={arrival.submission_key})
+        )
 
 
 def secret_of(course: Course, arrival: Arrival) -> str:
