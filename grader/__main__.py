@@ -37,13 +37,13 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
             leave_out_formats()
             from grader.common.logs import log_visibly
             from grader.course import Course
-            from grader.storage.failures import in_sentences
+            from grader.storage.failures import raise_gradebook_errors
 
             log_visibly()
             course = course or Course()
             refuse_another_place(course.root / 'nbgrader_config.py')
             _refuse_no_folder(course)
-            with in_sentences(course):
+            with raise_gradebook_errors(course):
                 return asked.run(course, asked)
         except CourseError as error:
             from grader.common.text import printable

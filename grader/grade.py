@@ -7,10 +7,10 @@ from grader.common.errors import CourseError
 from grader.common.futures import run_ahead
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment, SubmissionOutcome
-from grader.storage.backups import bring_in_order
-from grader.storage.database import one_engine
+from grader.storage.backups import recover_and_back_up
+from grader.storage.database import share_engine
 from grader.storage.deadlines import deadlines
-from grader.storage.failures import in_sentences
+from grader.storage.failures import raise_gradebook_errors
 from grader.storage.lock import gradebook_lock
 from grader.storage.submitted import SubmissionFolder, is_new
 from grader.workers.backend import Backend
@@ -49,7 +49,7 @@ def grade_all(
                 raise CourseError(found.problem)
             return grading.start(found, assignments[found.assignment])
 
-        with one_engine(course.db_url):
+        with share_engine(course.db_url):
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
                 yield grading.store(found, work)
 
@@ -60,7 +60,7 @@ def _prepare(
     """Bring the gradebook in order, and return each assignment prepared for grading."""
     course = grading.course
     deadlines(course.gradebook, course.assignments())  # raises now if the due dates are wrong
-    with in_sentences(course), gradebook_lock(course.gradebook):
-        bring_in_order(course)
+    with raise_gradebook_errors(course), gradebook_lock(course.gradebook):
+        recover_and_back_up(course)
         names = sorted({each.assignment for each in submissions if not each.problem})
         return {name: grading.prepare(name) for name in names}

@@ -16,17 +16,17 @@ from grader.course import Course
 from grader.judging.task import Result
 from grader.notebook.restore import AssignmentTemplate
 from grader.notebook.submission import Submission, unread_submission, with_notebook
-from grader.storage.failures import in_sentences
+from grader.storage.failures import raise_gradebook_errors
 from grader.storage.gradebook import StoredResult, store
 from grader.storage.lock import gradebook_lock
-from grader.storage.pipeline import prepare_template
+from grader.storage.pipeline import sanitize_template
 from grader.storage.registering import register
 from grader.storage.reuse import (
-    conditions,
+    conditions_digest,
     find_earlier_result,
     key_of,
     refresh_late_penalty,
-    remember,
+    write_key,
 )
 from grader.storage.seeds import seeds
 from grader.storage.submitted import SubmissionFolder
@@ -92,19 +92,19 @@ class Grading:
 
     def prepare(self, assignment: str) -> PreparedAssignment:
         """Register an assignment, and return what grading its submissions needs."""
-        with in_sentences(self.course), gradebook_lock(self.course.gradebook):
+        with raise_gradebook_errors(self.course), gradebook_lock(self.course.gradebook):
             register(self.course, assignment)
             template = self.course.template(assignment)
             return PreparedAssignment(
                 template=cache(partial(self._prepared, assignment, template)),
                 seed_of=(lambda _: self.seed) if self.seed else seeds(self.course, assignment),
                 packages=self.course.packages(assignment),
-                conditions=conditions(self.course, assignment, isolated=self.isolated),
+                conditions=conditions_digest(self.course, assignment, isolated=self.isolated),
             )
 
     def _prepared(self, assignment: str, template: AssignmentTemplate) -> AssignmentTemplate:
-        with in_sentences(self.course), gradebook_lock(self.course.gradebook):
-            return prepare_template(self.course, assignment, template)
+        with raise_gradebook_errors(self.course), gradebook_lock(self.course.gradebook):
+            return sanitize_template(self.course, assignment, template)
 
     def start(
         self, found: SubmissionFolder, prepared: PreparedAssignment
@@ -150,7 +150,7 @@ class Grading:
         try:
             graded = work.result()
             seconds = graded.seconds
-            with in_sentences(self.course), gradebook_lock(self.course.gradebook):
+            with raise_gradebook_errors(self.course), gradebook_lock(self.course.gradebook):
                 if graded.files != contents(found.folder):
                     raise TaskFailed(REPLACED)
                 if seconds is None:
@@ -175,5 +175,5 @@ class Grading:
 def _graded(
     submission: Submission, files: Mapping[str, bytes], result: Result, key: str
 ) -> GradedSubmission:
-    remember(result.notebook, key)
+    write_key(result.notebook, key)
     return GradedSubmission(submission, result.notebook, files, seconds=result.seconds)

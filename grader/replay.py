@@ -8,7 +8,7 @@ from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import read_submission
-from grader.storage.pipeline import prepared_template
+from grader.storage.pipeline import make_sanitized_template
 from grader.storage.records import graded_notebook, verdicts
 from grader.storage.seeds import seeds
 from grader.storage.submitted import SubmissionFolder
@@ -34,7 +34,7 @@ def replay(
     found = [each for each in submissions if not each.problem]
     seeds = [recorded_seed(course, each) if seed == RECORDED else seed for each in found]
     templates = {
-        name: prepared_template(course, name) for name in {each.assignment for each in found}
+        name: make_sanitized_template(course, name) for name in {each.assignment for each in found}
     }
     packages = {name: course.packages(name) for name in templates}
     with backend or Workers() as backend:

@@ -5,7 +5,7 @@ from course_maker import TOY, answered, executed, submit
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.registering import register
 
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -23,4 +23,4 @@ def graded_with(course, student, reasons=None):
     submission = read_submission(folder, student_id=student, assignment=TOY)
     register(course, TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    return submission, executed(prepare(course, TOY, restored), reasons or {})
+    return submission, executed(sanitize_restored(course, TOY, restored), reasons or {})

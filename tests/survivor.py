@@ -66,7 +66,7 @@ def run(
 
     stand_in(Path(log))
     grading.store = counted('storing', grading.store)
-    gradebook._finish = counted('storing', gradebook._finish)
+    gradebook._store_all = counted('storing', gradebook._store_all)
     SaveGrades.preprocess = counted('scores', SaveGrades.preprocess)
     sys.stdout = sys.stderr = open(said, 'w', encoding='utf-8')  # noqa: SIM115 - open to the end
     sys.setprofile(count)

@@ -6,7 +6,7 @@ import pytest
 
 from grader.common.errors import GradebookError
 from grader.course import Course
-from grader.storage.backups import KEPT, back_up, bring_in_order
+from grader.storage.backups import KEPT, back_up, recover_and_back_up
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def backups(course):
 
 def test_no_backup_is_made_without_a_database(course):
     assert back_up(course) is None
-    bring_in_order(course)
+    recover_and_back_up(course)
     assert not list(course.gradebook.iterdir())
 
 
@@ -61,10 +61,10 @@ def test_a_backup_is_restored_by_copying_it(course):
     back_up(course)
     course.database.write_bytes(b'scrap' * 1000)
     with pytest.raises(GradebookError, match='is damaged'):
-        bring_in_order(course)
+        recover_and_back_up(course)
     [backup] = backups(course)  # none of the damaged database
     shutil.copy(backup, course.database)
-    bring_in_order(course)
+    recover_and_back_up(course)
     assert things(course.database) == [1]
 
 
@@ -78,5 +78,5 @@ def test_a_damaged_database_is_refused_and_not_backed_up(course):
     raw[5 * 4096 : 7 * 4096] = b'\xff' * 8192
     course.database.write_bytes(raw)
     with pytest.raises(GradebookError, match='is damaged'):
-        bring_in_order(course)
+        recover_and_back_up(course)
     assert len(backups(course)) == 1

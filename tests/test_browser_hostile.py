@@ -24,7 +24,7 @@ from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
 from grader.report.report import Run, write_report
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.registering import register
 from grader.storage.submitted import find_submissions
 
@@ -140,7 +140,9 @@ def course(tmp_path_factory):
     submission = read_submission(folder, student_id=STUDENT, assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
     said = f'expected {EVIL}, saw {EVIL}: {EVIL}'
-    graded = executed(prepare(course, TOY, restored), {'double-check': said, 'double-hidden': '?'})
+    graded = executed(
+        sanitize_restored(course, TOY, restored), {'double-check': said, 'double-hidden': '?'}
+    )
     run = CellRun()
     for output in OUTPUTS:
         run.keep(output.output_type, output)

@@ -14,7 +14,7 @@ from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.registering import register
 from grader.storage.submitted import find_submissions
 
@@ -132,7 +132,7 @@ def test_an_earlier_submission_keeps_its_grade(course, came_in):
         folder = course.folder('submitted', 'ada', TOY)
         submission = read_submission(folder, student_id='ada', assignment=TOY)
         restored = restore(submission.notebook, course.template(TOY)).notebook
-        store(course, submission, executed(prepare(course, TOY, restored), reasons))
+        store(course, submission, executed(sanitize_restored(course, TOY, restored), reasons))
     kept = course.folder('submitted_before', 'ada', TOY) / '1'
     assert sorted(path.name for path in kept.iterdir()) == [
         'autograded',

@@ -13,10 +13,10 @@ from grader.common.errors import CourseError, GradebookError
 from grader.course import Course
 from grader.storage import failures
 from grader.storage.database import (
-    connected,
-    in_sentences,
     make_database,
-    one_engine,
+    open_database,
+    raise_gradebook_errors,
+    share_engine,
     transaction,
     wait_until_free,
 )
@@ -71,7 +71,7 @@ def test_a_database_that_stays_locked_is_reported_as_an_error(course, other, mon
     monkeypatch.setattr(failures, 'TIMEOUT_SEC', 0.2)
     with (
         pytest.raises(GradebookError, match=r'locked for 0 s.*run the same command again'),
-        in_sentences(course),
+        raise_gradebook_errors(course),
     ):
         wait_until_free(course)
     assert capsys.readouterr().out.startswith('waiting: ')
@@ -81,7 +81,10 @@ def test_a_database_that_stays_locked_is_reported_as_an_error(course, other, mon
 def test_a_full_disk_is_reported_even_behind_other_errors(course, code):
     wrapped = InvalidEntry('as nbgrader puts it')
     wrapped.__context__ = OSError(code, os.strerror(code))
-    with pytest.raises(GradebookError, match='the disk is full') as told, in_sentences(course):
+    with (
+        pytest.raises(GradebookError, match='the disk is full') as told,
+        raise_gradebook_errors(course),
+    ):
         raise wrapped
     assert 'run the same command again' in str(told.value)
 
@@ -89,7 +92,10 @@ def test_a_full_disk_is_reported_even_behind_other_errors(course, code):
 def test_a_full_database_is_reported_as_a_full_disk(course):
     with closing(sqlite3.connect(course.database)) as full:
         full.execute('PRAGMA max_page_count = 3')
-        with pytest.raises(GradebookError, match='the disk is full'), in_sentences(course):
+        with (
+            pytest.raises(GradebookError, match='the disk is full'),
+            raise_gradebook_errors(course),
+        ):
             full.execute('INSERT INTO some VALUES (?)', ['x' * 100_000])
 
 
@@ -99,14 +105,14 @@ def test_a_damaged_database_is_reported_with_the_newest_backup(course):
     (backups / 'gradebook-2026-01-01.db').touch()
     (backups / 'gradebook-2026-01-02.db').touch()
     course.database.write_bytes(b'not a database' * 100)
-    with pytest.raises(GradebookError, match='is damaged') as told, in_sentences(course):
+    with pytest.raises(GradebookError, match='is damaged') as told, raise_gradebook_errors(course):
         wait_until_free(course)
     assert f"cp '{backups / 'gradebook-2026-01-02.db'}' '{course.database}'" in str(told.value)
 
 
 @pytest.mark.parametrize('error', [OSError(errno.EACCES, 'no'), ValueError('x'), CourseError('y')])
 def test_errors_that_are_not_of_the_database_are_passed_on_unchanged(course, error):
-    with pytest.raises(type(error)) as told, in_sentences(course):
+    with pytest.raises(type(error)) as told, raise_gradebook_errors(course):
         raise error
     assert told.value is error
 
@@ -135,32 +141,32 @@ def test_a_database_is_made_whole_or_not_at_all(tmp_path, monkeypatch):
 
 
 def test_one_engine_serves_all_connections_within_its_block(empty):
-    with one_engine(empty.db_url):
+    with share_engine(empty.db_url):
         engines = set()
         for _ in range(3):
-            with connected(empty.db_url) as book:
+            with open_database(empty.db_url) as book:
                 assert book.students == []
                 engines.add(book.engine)
         assert len(engines) == 1
-    with connected(empty.db_url) as book:
+    with open_database(empty.db_url) as book:
         assert book.engine not in engines
 
 
 def test_the_database_file_is_closed_between_two_uses_of_one_engine(empty):
-    with one_engine(empty.db_url):
-        with connected(empty.db_url) as book:
+    with share_engine(empty.db_url):
+        with open_database(empty.db_url) as book:
             book.update_or_create_student('ada')
             book.db.add(Student(id='bob'))  # not committed
             book.db.flush()
         assert not open_files(empty.database)
         wait_until_free(empty, pytest.fail)
-        with connected(empty.db_url) as book:
+        with open_database(empty.db_url) as book:
             assert [student.id for student in book.students] == ['ada']
 
 
 def test_writes_go_to_a_database_that_replaced_the_former_file(empty, tmp_path):
     backup = shutil.copy(empty.database, tmp_path / 'backup.db')
-    with one_engine(empty.db_url):
+    with share_engine(empty.db_url):
         with transaction(empty.db_url) as book:
             book.update_or_create_student('ada')
         os.replace(backup, empty.database)
@@ -177,13 +183,13 @@ def test_a_transaction_with_one_engine_is_all_or_nothing_and_leaves_no_trace(emp
             book.add_student('ada')
             book.add_student('ada')
 
-    with one_engine(empty.db_url):
+    with share_engine(empty.db_url):
         with pytest.raises(InvalidEntry):
             add_twice()
-        with connected(empty.db_url) as book:
+        with open_database(empty.db_url) as book:
             assert book.students == []
             book.update_or_create_student('bob')  # nbgrader commits
-        with connected(empty.db_url) as book:
+        with open_database(empty.db_url) as book:
             assert [student.id for student in book.students] == ['bob']
 
 

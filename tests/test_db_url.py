@@ -10,7 +10,7 @@ from grader.common.db_url import configured_db_url, gradebook_of, is_in_postgres
 from grader.common.errors import CourseError, GradebookError
 from grader.common.logs import VisibleFilter
 from grader.course import Course
-from grader.storage.database import has_database, in_sentences
+from grader.storage.database import has_database, raise_gradebook_errors
 
 URL = 'postgresql://grader:se:cr3t@db.example.org:5433/course'
 
@@ -108,7 +108,7 @@ def test_a_missing_psycopg_is_reported_with_the_command_that_installs_it(course,
     configure(course, f'db_url = "{URL}"')
     monkeypatch.setitem(sys.modules, 'psycopg', None)
     words = r'psycopg.*pip install -r environment\.txt'
-    with pytest.raises(GradebookError, match=words) as told, in_sentences(course):
+    with pytest.raises(GradebookError, match=words) as told, raise_gradebook_errors(course):
         has_database(course)
     assert 'cr3t' not in str(told.value)
 
@@ -136,7 +136,7 @@ FAULTS = [
 def test_each_fault_of_the_database_server_is_reported_with_what_to_do(course, fault, said):
     configure(course, f'db_url = "{URL}"')
     wrapped = exc.OperationalError('SELECT 1', {}, fault)
-    with pytest.raises(GradebookError, match=said) as told, in_sentences(course):
+    with pytest.raises(GradebookError, match=said) as told, raise_gradebook_errors(course):
         raise wrapped
     assert 'postgresql://grader@db.example.org:5433/course' in str(told.value)
     assert 'then run the same command again' in str(told.value)
@@ -146,7 +146,7 @@ def test_each_fault_of_the_database_server_is_reported_with_what_to_do(course, f
 def test_a_database_error_of_the_course_s_own_code_is_passed_on_unchanged(course):
     configure(course, f'db_url = "{URL}"')
     ours = exc.DataError('INSERT', {}, errors.StringDataRightTruncation('value too long'))
-    with pytest.raises(exc.DataError), in_sentences(course):
+    with pytest.raises(exc.DataError), raise_gradebook_errors(course):
         raise ours
 
 

@@ -16,9 +16,9 @@ from grader.notebook.submission import read_submission
 from grader.report import feedback as module
 from grader.report import page_parts
 from grader.report.feedback import write_feedback
-from grader.storage.database import connected
+from grader.storage.database import open_database
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare, prepared_template, unanswered
+from grader.storage.pipeline import make_sanitized_template, make_unanswered, sanitize_restored
 from grader.storage.registering import register
 
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -35,10 +35,10 @@ def feedback(course, student, notebook, *, reasons=None, outputs=None, notes=())
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     if submission.problem:
-        graded = unanswered(prepared_template(course, TOY), submission.problem)
+        graded = make_unanswered(make_sanitized_template(course, TOY), submission.problem)
     else:
         restored = restore(submission.notebook, course.template(TOY)).notebook
-        graded = executed(prepare(course, TOY, restored), reasons or {})
+        graded = executed(sanitize_restored(course, TOY, restored), reasons or {})
         for cell in graded.cells:
             if cell.id in (outputs or {}):
                 cell.outputs = [*outputs[cell.id], *cell.outputs]
@@ -261,7 +261,7 @@ def test_a_page_that_cannot_be_made_does_not_stop_other_pages(course, monkeypatc
 
 def test_a_student_removed_from_the_database_is_reported_and_has_no_page(course):
     feedback(course, 'leaves', answered(course, RIGHT))
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         book.remove_student('leaves')
     said = []
     pages = write_feedback(course, say=said.append)
@@ -296,7 +296,7 @@ def test_many_pages_are_written_and_reported_in_order(course, tmp_path):
     students = [f's{number:02}' for number in range(3 * AT_ONCE)]
     for student in students:
         submission = handed_in(course, student)
-        store(course, submission, executed(prepared_template(course, TOY).notebook, {}))
+        store(course, submission, executed(make_sanitized_template(course, TOY).notebook, {}))
     told = []
     pages = write_feedback(course, say=told.append)
     assert [page.parts[-3] for page in pages] == students
@@ -323,7 +323,7 @@ def test_an_error_while_writing_a_page_names_the_page(course, tmp_path, monkeypa
     course = Course(root=course.root, gradebook=tmp_path / 'gradebook')
     register(course, TOY)
     submission = handed_in(course, 'ada')
-    store(course, submission, executed(prepared_template(course, TOY).notebook, {}))
+    store(course, submission, executed(make_sanitized_template(course, TOY).notebook, {}))
     monkeypatch.setattr(module, 'graded_notebook', lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError) as raised:
         write_feedback(course)

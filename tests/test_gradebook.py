@@ -23,7 +23,7 @@ from grader.notebook.submission import read_submission
 from grader.storage import gradebook
 from grader.storage import records as records_module
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare, prepared_template, unanswered
+from grader.storage.pipeline import make_sanitized_template, make_unanswered, sanitize_restored
 from grader.storage.records import records, verdicts
 from grader.storage.registering import register
 from grader.storage.submission_rows import SubmissionRows
@@ -105,7 +105,9 @@ def test_a_grade_cell_without_a_verdict_never_earns_points(course):
         course.folder('submitted', 'ada', TOY), student_id='ada', assignment=TOY
     )
     register(course, TOY)
-    silent = prepare(course, TOY, restore(submission.notebook, course.template(TOY)).notebook)
+    silent = sanitize_restored(
+        course, TOY, restore(submission.notebook, course.template(TOY)).notebook
+    )
     assert store(course, submission, silent).pending
     assert by_cell(course, 'ada')['double-check'].score is None
 
@@ -130,7 +132,9 @@ def test_submitted_files_are_only_read(course):
     before = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in path.parent.iterdir()}
     grade_again = read_submission(path.parent, student_id='ada', assignment=TOY)
     register(course, TOY)
-    restored = prepare(course, TOY, restore(grade_again.notebook, course.template(TOY)).notebook)
+    restored = sanitize_restored(
+        course, TOY, restore(grade_again.notebook, course.template(TOY)).notebook
+    )
     store(course, grade_again, executed(restored, {}))
     assert before == {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in path.parent.iterdir()}
     kept = course.folder('autograded', 'ada', TOY)
@@ -173,7 +177,7 @@ class Killed(BaseException):
 
 def kill_at(monkeypatch, step, when):
     """Raise Killed before or after a step."""
-    place = {'replace': os, 'finish': gradebook, 'unlink': Path}[step]
+    place = {'replace': os, 'store_scores': gradebook, 'unlink': Path}[step]
     does = getattr(place, step)
 
     def done(*arguments):
@@ -189,8 +193,12 @@ def kill_at(monkeypatch, step, when):
     [
         ('replace', 'before', 0),  # nothing has begun
         ('replace', 'after', 1),
-        ('finish', 'before', 1),
-        ('finish', 'after', 1),  # the scores are in the database, and the notebook is not there
+        ('store_scores', 'before', 1),
+        (
+            'store_scores',
+            'after',
+            1,
+        ),  # the scores are in the database, and the notebook is not there
         ('unlink', 'before', 1),
         ('unlink', 'after', 0),  # all is stored
     ],
@@ -232,7 +240,9 @@ def test_student_names_of_any_alphabet_are_stored_unchanged(course, student):
     submission = read_submission(folder, student_id=student, assignment=TOY)
     register(course, TOY)
     stored = store(
-        course, submission, unanswered(prepared_template(course, TOY), submission.problem)
+        course,
+        submission,
+        make_unanswered(make_sanitized_template(course, TOY), submission.problem),
     )
     assert (stored.score, stored.pending) == (0.0, False)
     assert 'is not JSON' in stored.reason
@@ -339,7 +349,11 @@ def test_an_unreadable_submission_is_stored_as_a_notebook_with_a_reason(course):
     folder = course.folder('submitted', 'ada', TOY)
     submission = read_submission(folder, student_id='ada', assignment=TOY)
     register(course, TOY)
-    store(course, submission, unanswered(prepared_template(course, TOY), submission.problem))
+    store(
+        course,
+        submission,
+        make_unanswered(make_sanitized_template(course, TOY), submission.problem),
+    )
     kept = nbformat.read(course.folder('autograded', 'ada', TOY) / f'{TOY}.ipynb', as_version=4)
     nbformat.validate(kept)
     assert kept.metadata[KEY].problem == submission.problem

@@ -30,7 +30,7 @@ from grader.storage.deadlines import (
 )
 from grader.storage.gradebook import store
 from grader.storage.lateness import recount_late_penalties
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.records import records
 from grader.storage.registering import register
 
@@ -62,7 +62,7 @@ def grade(course, student, handed_in):
         path.with_name('timestamp.txt').write_text(handed_in)
     submission = read_submission(path.parent, student_id=student, assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
+    stored = store(course, submission, executed(sanitize_restored(course, TOY, restored), {}))
     assert stored.score + stored.late == pytest.approx(3.0)
     return stored.score
 

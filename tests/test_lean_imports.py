@@ -12,7 +12,7 @@ import pytest
 from course_maker import TOY, released_course
 
 from grader.common import versions
-from grader.storage.lesson_checksums import FOLDER, checksums, tidied
+from grader.storage.lesson_checksums import FOLDER, checksums, lesson_to_register
 
 LEAN = """
 import sys
@@ -120,7 +120,7 @@ def test_checksums_that_are_damaged_are_made_anew(kept, tmp_path):
     assert path.read_bytes() == before
     assert wanted == {
         cell.metadata.nbgrader.grade_id: cell.metadata.nbgrader.checksum
-        for cell in tidied(course, TOY).cells
+        for cell in lesson_to_register(course, TOY).cells
         if 'checksum' in cell.metadata.get('nbgrader', {})
     }
 

@@ -11,7 +11,7 @@ from grader.judging.execute import execute
 from grader.judging.local_paths import hide_local_paths, shorten_local_paths
 from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import restore
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def test_a_graded_notebook_does_not_contain_the_path_of_the_course(tmp_path):
     answer = 'import rclpy\nprint(rclpy.__file__)\nfrom my_robot_basics.live import nothing_such'
     restored = restore(answered(course, answer), course.template('00_toy')).notebook
     graded = execute(
-        prepare(course, '00_toy', restored), trust_students=not require_isolation()
+        sanitize_restored(course, '00_toy', restored), trust_students=not require_isolation()
     ).notebook
     (said,) = [cell for cell in graded.cells if grade_id(cell) == 'double']
     assert '.venv/lib/python' in said.outputs[0].text

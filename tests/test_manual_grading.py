@@ -21,7 +21,7 @@ from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import reason_in_a_line, score_of
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 
 TOKEN = 'a-token'
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -93,7 +93,7 @@ def grade(course, student, explained):
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
+    stored = store(course, submission, executed(sanitize_restored(course, TOY, restored), {}))
     return SubmissionOutcome(student, TOY, stored, stored.reason)
 
 

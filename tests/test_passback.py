@@ -14,7 +14,7 @@ from grader.notebook.submission import read_submission
 from grader.passback import write
 from grader.passback.final_scores import final_scores
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.records import CellScore
 
 
@@ -312,7 +312,7 @@ def test_a_download_of_moodle_is_collected_graded_and_exported(tmp_path, capsys)
     folder = course.folder('submitted', 'Ada Lovelace', TOY)
     submission = read_submission(folder, student_id='Ada Lovelace', assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
+    stored = store(course, submission, executed(sanitize_restored(course, TOY, restored), {}))
     capsys.readouterr()
     assert main(['scores', '--format', 'moodle'], course=course) == 0
     path = course.gradebook / 'moodle' / f'{TOY}.csv'

@@ -5,7 +5,7 @@ from sample_class import PATHS, assignment_of
 from grader.course import Course
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
-from grader.storage.pipeline import prepare, prepared_template
+from grader.storage.pipeline import make_sanitized_template, sanitize_restored
 from grader.storage.registering import register
 
 NAMES = (
@@ -32,8 +32,10 @@ def test_restoring_from_a_prepared_template_equals_preparing_afterwards(name, co
     (tmp_path / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
     submission = read_submission(tmp_path, student_id='ada', assignment=assignment)
     notebook = submission.notebook or nbformat.v4.new_notebook()
-    one = prepare(course, assignment, restore(notebook, course.template(assignment)).notebook)
-    other = restore(notebook, prepared_template(course, assignment)).notebook
+    one = sanitize_restored(
+        course, assignment, restore(notebook, course.template(assignment)).notebook
+    )
+    other = restore(notebook, make_sanitized_template(course, assignment)).notebook
     assert one == other
     assert any('checksum' in cell.metadata.get('nbgrader', {}) for cell in other.cells)
     nbformat.validate(other)

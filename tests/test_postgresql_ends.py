@@ -21,7 +21,7 @@ from grader.__main__ import main
 from grader.common.errors import GradebookError
 from grader.course import Course
 from grader.storage import failures
-from grader.storage.database import in_sentences, wait_until_free
+from grader.storage.database import raise_gradebook_errors, wait_until_free
 from grader.storage.postgresql import make_tables
 from grader.storage.records import records
 from grader.storage.registering import register
@@ -170,13 +170,13 @@ def test_waiting_for_the_server_ends_and_is_skipped_for_other_faults(
     monkeypatch.setattr('grader.storage.failures.TIMEOUT_SEC', 0.3)
     postgresql.stop()
     said = []
-    with pytest.raises(GradebookError, match='does not answer'), in_sentences(course):
+    with pytest.raises(GradebookError, match='does not answer'), raise_gradebook_errors(course):
         wait_until_free(course, said.append)
     postgresql.start()
     assert len(said) == 1
     monkeypatch.setattr('grader.storage.failures.TIMEOUT_SEC', 1e6)
     use(course.gradebook, postgresql.address('no_such'))
-    with pytest.raises(GradebookError, match='createdb'), in_sentences(course):
+    with pytest.raises(GradebookError, match='createdb'), raise_gradebook_errors(course):
         wait_until_free(course, pytest.fail)
 
 

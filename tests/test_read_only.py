@@ -11,7 +11,7 @@ from course_maker import TOY, released_course, submit
 from grader.__main__ import main
 from grader.common.errors import GradebookError
 from grader.course import Course
-from grader.storage.failures import in_sentences
+from grader.storage.failures import raise_gradebook_errors
 
 VERBS = (
     ['grade'],
@@ -73,9 +73,9 @@ def test_each_verb_says_that_a_read_only_gradebook_cannot_be_written(tmp_path):
 def test_the_path_of_a_refused_write_is_named(tmp_path, code):
     course, path = Course.at(tmp_path), tmp_path / 'gradebook' / 'deadlines.toml'
     said = f'^{path} cannot be .*then run the same command'
-    with pytest.raises(GradebookError, match=said), in_sentences(course):
+    with pytest.raises(GradebookError, match=said), raise_gradebook_errors(course):
         raise OSError(code, 'refused', str(path))
-    with pytest.raises(OSError, match='refused'), in_sentences(course):
+    with pytest.raises(OSError, match='refused'), raise_gradebook_errors(course):
         raise OSError(code, 'refused')  # of a process or a socket
 
 

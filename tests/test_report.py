@@ -14,7 +14,7 @@ from grader.notebook.submission import read_submission
 from grader.report.report import Run, write_report
 from grader.report.statistics import WRITTEN, tally
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare, prepared_template, unanswered
+from grader.storage.pipeline import make_sanitized_template, make_unanswered, sanitize_restored
 
 ANSWER = 'def double(x):\n    return x + x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -36,10 +36,10 @@ def graded(course, student, reasons=None, *, explained='so', seconds=1.0, notebo
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     if submission.problem:
-        judged = unanswered(prepared_template(course, TOY), submission.problem)
+        judged = make_unanswered(make_sanitized_template(course, TOY), submission.problem)
     else:
         restored = restore(submission.notebook, course.template(TOY)).notebook
-        judged = executed(prepare(course, TOY, restored), reasons or {})
+        judged = executed(sanitize_restored(course, TOY, restored), reasons or {})
     stored = store(course, submission, judged)
     return SubmissionOutcome(student, TOY, stored, stored.reason, seconds)
 

@@ -17,7 +17,7 @@ from grader.report.fingerprints import find_pairs
 from grader.report.report import Run, write_report
 from grader.report.similar_answers import find_similar
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from tests.test_report import RUN
 
 SKELETON = 'class FiveHz(Node):\n    def __init__(self):\n        # YOUR CODE HERE\n        pass\n'
@@ -129,7 +129,7 @@ def graded(course, student, answer):
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
+    stored = store(course, submission, executed(sanitize_restored(course, TOY, restored), {}))
     return SubmissionOutcome(student, TOY, stored, stored.reason, 1.0)
 
 

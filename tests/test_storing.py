@@ -18,9 +18,14 @@ from traitlets.config import Config
 from grader.authoring.release_passes import CODE_STUB, PASSES
 from grader.notebook.submission import read_submission
 from grader.storage.cell_metadata import CheckMetadataOnce
-from grader.storage.database import connected, one_engine
+from grader.storage.database import open_database, share_engine
 from grader.storage.gradebook import store
-from grader.storage.pipeline import apply, prepared_template, resources_of, unanswered
+from grader.storage.pipeline import (
+    apply_preprocessors,
+    make_sanitized_template,
+    make_unanswered,
+    resources_of,
+)
 from grader.storage.submission_rows import SubmissionRows
 
 MOST_QUESTIONS = 10
@@ -51,7 +56,9 @@ def graded_toy(course, student, **reasons):
     submit(course, student, answered(course, RIGHT))
     folder = course.folder('submitted', student, TOY)
     submission = read_submission(folder, student_id=student, assignment=TOY)
-    return submission, executed(unanswered(prepared_template(course, TOY), 'why'), reasons)
+    return submission, executed(
+        make_unanswered(make_sanitized_template(course, TOY), 'why'), reasons
+    )
 
 
 def test_release_passes_do_the_same_as_in_nbconverts_exporter(course):
@@ -63,7 +70,7 @@ def test_release_passes_do_the_same_as_in_nbconverts_exporter(course):
         exporter.register_preprocessor(each)
     lesson, at = course.source(TOY), resources_of(course, TOY)
     before = copy.deepcopy(lesson)
-    ours = [apply(passes, lesson, at) for _ in range(2)]
+    ours = [apply_preprocessors(passes, lesson, at) for _ in range(2)]
     assert ours[0] == ours[1]
     assert lesson == before
     assert ours[0] == exporter.from_notebook_node(lesson, at)[0] != lesson
@@ -80,7 +87,7 @@ def test_an_invalid_notebook_is_refused_before_anything_is_stored(course):
 
 def test_storing_takes_one_connection_and_few_database_queries(course):
     submission, graded = graded_toy(course, 'ada')
-    with one_engine(course.db_url):
+    with share_engine(course.db_url):
         store(course, submission, copy.deepcopy(graded))
         with watched('before_cursor_execute') as asked, watched('connect') as connections:
             store(course, submission, graded)
@@ -90,8 +97,8 @@ def test_storing_takes_one_connection_and_few_database_queries(course):
 
 def test_a_nested_connection_block_discards_uncommitted_changes(course):
     grade(course, 'bob', {})
-    with connected(course.db_url) as book:
-        with connected(course.db_url) as inner:
+    with open_database(course.db_url) as book:
+        with open_database(course.db_url) as inner:
             assert inner is book
             inner.db.execute(text('update grade set auto_score = 7'))
         held = set(book.db.scalars(text('select auto_score from grade')))
@@ -99,13 +106,13 @@ def test_a_nested_connection_block_discards_uncommitted_changes(course):
             other.execute('begin exclusive')
             other.rollback()
     assert 7 not in held
-    with connected(course.db_url) as another:
+    with open_database(course.db_url) as another:
         assert another is not book
 
 
 def test_rows_of_a_submission_are_found_as_by_nbgrader(course):
     grade(course, 'cleo', {}, explained='so')
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         rows = SubmissionRows(book, book.find_submission(TOY, 'cleo'), TOY)
         for name in ('double-check', 'double-hidden', 'explain'):
             assert rows.find_grade(name) is book.find_grade(name, TOY, TOY, 'cleo')
@@ -122,7 +129,7 @@ def test_valid_metadata_is_checked_once_and_invalid_metadata_each_time(course, m
     monkeypatch.setattr(
         MetadataValidator, 'validate_nb', lambda self, nb: looked.append(1) or does(self, nb)
     )
-    check, lesson = CheckMetadataOnce(), prepared_template(course, TOY).notebook
+    check, lesson = CheckMetadataOnce(), make_sanitized_template(course, TOY).notebook
     lesson.cells[4].metadata.nbgrader.grade_id = 'of-this-test'
     looked.clear()
     for _ in range(2):

@@ -11,7 +11,7 @@ from grader.export.totals import add_up, as_csv, write_totals
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.records import CellScore
 
 
@@ -64,7 +64,7 @@ def test_the_totals_are_those_of_the_gradebook(course, capsys):
     folder = course.folder('submitted', 'ada', TOY)
     submission = read_submission(folder, student_id='ada', assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
-    stored = store(course, submission, executed(prepare(course, TOY, restored), {}))
+    stored = store(course, submission, executed(sanitize_restored(course, TOY, restored), {}))
     assert main(['scores', '--totals'], course=course) == 0
     path = write_totals(course)
     assert str(path) in capsys.readouterr().out

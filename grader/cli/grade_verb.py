@@ -15,7 +15,7 @@ from grader.kernels.isolation import (
 from grader.replay import replay
 from grader.report.progress_table import changes, print_rows
 from grader.report.report import Run, write_report
-from grader.storage.database import one_engine
+from grader.storage.database import share_engine
 from grader.storage.deadlines import extended_for_nobody
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
@@ -30,7 +30,7 @@ def run_grade(
     backend: Backend,
 ) -> int:
     """Grade, print a row for each submission, write the report; return 1 if one was not graded."""
-    with one_engine(course.db_url):
+    with share_engine(course.db_url):
         return _run_grade(course, asked, submissions, backend)
 
 

@@ -11,7 +11,7 @@ from grader.course import Course
 from grader.export.scores import write_scores
 from grader.export.totals import write_totals
 from grader.passback.write import write_feedback_archives, write_platform_scores
-from grader.storage.database import connected, has_database, wait_until_free
+from grader.storage.database import has_database, open_database, wait_until_free
 from grader.storage.registering import withdrawn
 
 
@@ -64,7 +64,7 @@ def run_feedback(course: Course, asked: argparse.Namespace) -> int:
 
 def _say_what_is_withdrawn(course: Course) -> None:
     """Print lessons that are no longer in solutions/, but whose scores still count."""
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         found = withdrawn(course, book)
     for name, number in sorted(found.items()):
         if number:

@@ -17,7 +17,7 @@ from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
 from grader.storage.deadlines import Deadlines, deadlines
-from grader.storage.pipeline import apply, resources_of
+from grader.storage.pipeline import apply_preprocessors, resources_of
 
 PASSES = (
     'grader.authoring.release_passes.TidyMetadata',
@@ -60,7 +60,7 @@ def write_solutions(
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for assignment, source in sources.items():
-        solved = apply(PASSES, source, resources_of(course, assignment))
+        solved = apply_preprocessors(PASSES, source, resources_of(course, assignment))
         keep_outputs(solved, last_release(course, assignment), sanitizer_of(course))
         paths.append(folder / f'{assignment}.ipynb')
         write_whole(paths[-1], nbformat.writes(solved) + '\n')

@@ -16,7 +16,7 @@ from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, call_off, pars
 from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.submission import SECRET, TIMESTAMP
-from grader.storage.database import has_database, one_engine
+from grader.storage.database import has_database, share_engine
 from grader.storage.gradebook import recover
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.pipeline import resources_of
@@ -73,7 +73,7 @@ def write_feedback(
     found = sorted(course.folder('autograded', '', '').glob('*/*/*.ipynb'))
     whose = [each.parts[-3:] for each in found if each.stem == each.parts[-2]]
     pages = []
-    with one_engine(course.db_url), _threads() as threads:
+    with share_engine(course.db_url), _threads() as threads:
 
         def start(each: tuple[str, ...]) -> 'Future[str]':
             student, assignment, _ = each

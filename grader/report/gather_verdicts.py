@@ -7,7 +7,7 @@ from nbgrader.preprocessors import ClearHiddenTests, GetGrades
 from grader.common.errors import DamagedResult
 from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
-from grader.storage.database import connected
+from grader.storage.database import open_database
 from grader.storage.held_scores import held_score
 from grader.storage.submission_rows import SubmissionRows
 
@@ -24,7 +24,7 @@ class GatherVerdicts(GetGrades):
         self.notebook_id, self.assignment_id = at['notebook'], at['assignment']
         self.student_id = at['student']
         whose = self.student_id, self.assignment_id
-        with connected(at['db_url']) as book:
+        with open_database(at['db_url']) as book:
             try:
                 submission = book.find_submission(self.assignment_id, self.student_id)
             except MissingEntry:

@@ -17,8 +17,8 @@ from grader.serving.queue_file import open_queue
 from grader.serving.reception import take_in_new_entries
 from grader.serving.removed_entries import RemovedEntries
 from grader.serving.steps import ServingState, start_gradings, store_finished, store_replaced
-from grader.storage.backups import bring_in_order
-from grader.storage.database import one_engine
+from grader.storage.backups import recover_and_back_up
+from grader.storage.database import share_engine
 from grader.workers.backend import Backend
 
 LOOK_SEC = 0.25
@@ -47,10 +47,10 @@ def serve(
         serving_lock(course),
         backend,
         open_queue(course.gradebook, inbound) as queue,
-        one_engine(course.db_url),
+        share_engine(course.db_url),
     ):
         isolated = backend.require_isolation(trust_students=trust_students)
-        bring_in_order(course)
+        recover_and_back_up(course)
         queue.resume()
         remove_unrecorded_copies(course, queue)
         grading = Grading(course, backend, isolated, trust_students=trust_students)

@@ -29,7 +29,7 @@ from grader.serving.rounds import Rounds
 from grader.serving.turns import next_turn, replaced_by
 from grader.serving.unexpected_errors import affects_all_submissions, log_unexpected_error
 from grader.storage.deadlines import FILE, Deadlines, deadlines
-from grader.storage.failures import in_sentences
+from grader.storage.failures import raise_gradebook_errors
 from grader.storage.submitted import SubmissionFolder
 
 BUDGET_SEC = 0.5
@@ -146,7 +146,7 @@ def store_result(
 def _release(serving: ServingState, arrival: Arrival) -> str:
     """Write a feedback page, and put it into the exchange; return why that failed, or ''."""
     try:
-        with in_sentences(serving.course):
+        with raise_gradebook_errors(serving.course):
             page, _ = write_page(serving.course, *arrival.submission_key, serving.exporter)
         if serving.feedback and (secret := secret_of(serving.course, arrival)):
             release_page(page, serving.feedback, secret=secret, notebook=arrival.assignment)

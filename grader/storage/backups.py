@@ -12,17 +12,17 @@ from grader.common.db_url import is_in_postgresql
 from grader.course import Course
 from grader.storage.database import has_database, wait_until_free
 from grader.storage.dumps import dump
-from grader.storage.failures import in_sentences
+from grader.storage.failures import raise_gradebook_errors
 from grader.storage.gradebook import recover
 
 KEPT = 10
 """How many backups are kept; a new one replaces the oldest."""
 
 
-def bring_in_order(course: Course) -> None:
+def recover_and_back_up(course: Course) -> None:
     """Before a run: finish what a killed run had begun, and back up the database."""
     recover(course)
-    with in_sentences(course):
+    with raise_gradebook_errors(course):
         if has_database(course):
             wait_until_free(course)
             back_up(course)

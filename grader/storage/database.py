@@ -19,7 +19,7 @@ from grader.common.logs import tell
 from grader.course import Course
 from grader.storage import failures, postgresql
 from grader.storage.failures import BUSY
-from grader.storage.failures import in_sentences as in_sentences
+from grader.storage.failures import raise_gradebook_errors as raise_gradebook_errors
 
 # nbgrader raises the error anyway; this only hides its traceback
 logging.getLogger('tornado.application').addFilter(
@@ -39,7 +39,8 @@ def make_ready(course: Course) -> None:
     if ours not in programs:
         os.environ['PATH'] = os.pathsep.join([ours, *programs])
     if is_in_postgresql(course.db_url) and 'nbgrader' in Path(sys.argv[0]).parts:
-        with in_sentences(course):  # nbgrader would only say that the database must be upgraded
+        # nbgrader would only say that the database must be upgraded
+        with raise_gradebook_errors(course):
             make_database(course)
 
 
@@ -76,7 +77,7 @@ def _refuse_emptied(course: Course) -> None:
     backups = (course.gradebook / 'backups').glob('*.db')
     graded = course.folder('autograded', '', '').glob('*/*/*.ipynb')
     if any(backups) or any(graded):
-        raise GradebookError(failures.damaged(course, 'the file is empty'))
+        raise GradebookError(failures.damaged_message(course, 'the file is empty'))
 
 
 def _make_tables(db_url: str) -> None:
@@ -101,7 +102,7 @@ def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
     PostgreSQL serves several programs at a time: wait until its server answers.
     """
     if is_in_postgresql(course.db_url):
-        postgresql.wait_until_there(course.db_url, failures.TIMEOUT_SEC, say)
+        postgresql.wait_until_available(course.db_url, failures.TIMEOUT_SEC, say)
         return
     _refuse_emptied(course)
     deadline, said = time.monotonic() + failures.TIMEOUT_SEC, False
@@ -121,12 +122,12 @@ def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
 
 
 _engines: dict[str, Gradebook | None] = {}
-"""By URL: the open engine of each block of `one_engine`; None until the first use."""
+"""By URL: the open engine of each block of `share_engine`; None until the first use."""
 
 
 @contextmanager
-def one_engine(db_url: str) -> Iterator[None]:
-    """Let `connected` create the engine of this database only once: that costs most of its time.
+def share_engine(db_url: str) -> Iterator[None]:
+    """Let `open_database` create this engine only once: that costs most of its time.
 
     The file is still opened anew each time. The outermost block ends the reuse.
     """
@@ -145,7 +146,7 @@ _connected: dict[str, Gradebook] = {}
 
 
 @contextmanager
-def connected(db_url: str) -> Iterator[Gradebook]:
+def open_database(db_url: str) -> Iterator[Gradebook]:
     """Open the database; what is not committed at the end is discarded.
 
     A block inside another one uses the same connection; its end discards loaded objects, too.
@@ -170,7 +171,7 @@ def connected(db_url: str) -> Iterator[Gradebook]:
 @contextmanager
 def transaction(db_url: str) -> Iterator[Gradebook]:
     """Open the database; commit once at the end what nbgrader would commit cell by cell."""
-    with connected(db_url) as book:
+    with open_database(db_url) as book:
         commit, book.db.commit = book.db.commit, book.db.flush
         try:
             yield book

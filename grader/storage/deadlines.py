@@ -65,7 +65,7 @@ def read_deadlines(
     Raises CourseError if something in it is wrong, such as a name not among `assignments`.
     """
     try:
-        return _understood(tomllib.loads(content.decode()), assignments)
+        return _parse_deadlines(tomllib.loads(content.decode()), assignments)
     except (ValueError, _Wrong) as error:
         raise CourseError(
             f'{path}: {error}. Correct it: docs/for-instructors.md, Due dates, has an example.'
@@ -90,7 +90,7 @@ class _Wrong(Exception):
     """What is wrong in the file."""
 
 
-def _understood(said: dict, assignments: Collection[str] | None) -> Deadlines:
+def _parse_deadlines(said: dict, assignments: Collection[str] | None) -> Deadlines:
     due, extended, late = (_table(said, name) for name in ('due', 'extended', 'late'))
     if strange := [*(said.keys() - _TABLES), *(late.keys() - _POLICY.keys())]:
         raise _Wrong(f'{strange[0]!r} is not a name that this file can have')

@@ -41,10 +41,10 @@ def describe_deadlines(course: Course) -> Iterator[str]:
     found = deadlines(course.gradebook, course.assignments()) or Deadlines()
     for assignment in course.assignments():
         due = found.due.get(assignment)
-        yield f'{assignment}  {"due " + _shown(due) if due else "no due date"}'
+        yield f'{assignment}  {"due " + _in_local_time(due) if due else "no due date"}'
         for (extended, student), until in sorted(found.extended.items()):
             if extended == assignment:
-                yield f'  extended for {printable(student)} until {_shown(until)}'
+                yield f'  extended for {printable(student)} until {_in_local_time(until)}'
     if found.per_day:
         yield (
             f'Each day late costs {found.per_day:.0%} of the score, {found.at_most:.0%} at most; '
@@ -76,8 +76,8 @@ def _refuse_pointless(
         )
     if when.astimezone(UTC).replace(tzinfo=None) <= due:
         raise CourseError(
-            f'an extension until {_shown(when)} gives nobody more time: {assignment} is due '
-            f'{_shown(due)}'
+            f'an extension until {_in_local_time(when)} gives nobody more time: {assignment} is '
+            f'due {_in_local_time(due)}'
         )
 
 
@@ -100,7 +100,7 @@ def _put(
             del outer[name]
 
 
-def _shown(when: datetime) -> str:
+def _in_local_time(when: datetime) -> str:
     """Show a time in this machine's zone; without a zone it is UTC."""
     when = when if when.tzinfo else when.replace(tzinfo=UTC)
     return f'{when.astimezone():%Y-%m-%d %H:%M %Z}'

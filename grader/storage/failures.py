@@ -20,7 +20,7 @@ _NOT_WRITTEN = {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
 
-def damaged(course: Course, why: str) -> str:
+def damaged_message(course: Course, why: str) -> str:
     """Return the message for a database that lost its content, and how to restore it."""
     found = f'{course.database} is damaged ({why}).'
     backups = course.gradebook / 'backups'
@@ -37,7 +37,7 @@ def damaged(course: Course, why: str) -> str:
 
 
 @contextmanager
-def in_sentences(course: Course) -> Iterator[None]:
+def raise_gradebook_errors(course: Course) -> Iterator[None]:
     """Turn an error of a disk or a database into a GradebookError; other errors pass."""
     try:
         yield
@@ -52,9 +52,9 @@ def _sentence(error: BaseException | None, course: Course) -> str | None:
     if error is None or isinstance(error, CourseError):
         return None
     if is_in_postgresql(course.db_url):
-        from grader.storage.postgresql import sentence_of  # imports nbgrader's database code
+        from grader.storage.postgresql import message_of  # imports nbgrader's database code
 
-        if told := sentence_of(error, course.db_url):
+        if told := message_of(error, course.db_url):
             return told
     code = getattr(error, 'sqlite_errorcode', 0) & 0xFF
     if code == sqlite3.SQLITE_FULL or (isinstance(error, OSError) and error.errno in _FULL):
@@ -70,18 +70,18 @@ def _sentence(error: BaseException | None, course: Course) -> str | None:
             'formgrader that hangs), then run the same command again: it goes on.'
         )
     if code in _DAMAGED:
-        return damaged(course, str(error))
+        return damaged_message(course, str(error))
     if code in _NOT_WRITTEN:
-        return _refused(course.gradebook, 'written', str(error), 'write')
+        return _refused_message(course.gradebook, 'written', str(error), 'write')
     if isinstance(error, OSError) and error.filename is not None:
         if error.errno == errno.EROFS:
-            return _refused(error.filename, 'written', error.strerror, 'write')
+            return _refused_message(error.filename, 'written', error.strerror, 'write')
         if error.errno in _REFUSED:
-            return _refused(error.filename, 'used', error.strerror, 'read and write')
+            return _refused_message(error.filename, 'used', error.strerror, 'read and write')
     return _sentence(error.__cause__ or error.__context__, course)
 
 
-def _refused(path: object, done: str, why: str | None, right: str) -> str:
+def _refused_message(path: object, done: str, why: str | None, right: str) -> str:
     return (
         f'{path} cannot be {done}: {why}. What was stored before is kept. Give this user the '
         f'right to {right} there (or remount it), then run the same command again.'

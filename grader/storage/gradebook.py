@@ -19,11 +19,16 @@ from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY
 from grader.notebook.submission import Submission, from_exchange, handed_in, read_submission
-from grader.storage.database import connected, in_sentences, make_database, wait_until_free
+from grader.storage.database import (
+    make_database,
+    open_database,
+    raise_gradebook_errors,
+    wait_until_free,
+)
 from grader.storage.held_scores import held_score
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
-from grader.storage.pipeline import finish, first_reason, resources_of
+from grader.storage.pipeline import first_reason, resources_of, store_scores
 from grader.storage.registering import register, register_all
 
 _JOURNAL = '.{}.ipynb.begun'
@@ -65,14 +70,14 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
     journal = _journal(course, submission)
     whose = submission.student_id, submission.assignment
     try:
-        with in_sentences(course):
+        with raise_gradebook_errors(course):
             wait_until_free(course)
-            with connected(course.db_url) as book:  # one connection for all that follows
+            with open_database(course.db_url) as book:  # one connection for all that follows
                 former = held_score(book, *whose)
                 _keep_files(course, submission)
                 # with ensure_ascii=False, text that can't be encoded fails here, not half-way
                 write_whole(journal, json.dumps(graded, ensure_ascii=False))
-                saved = _finish(course, submission, graded)
+                saved = _store_all(course, submission, graded)
                 now = held_score(book, *whose)
     except (GradebookError, OSError):
         raise  # the user can fix that, and then `recover` finishes
@@ -107,9 +112,9 @@ def recover(course: Course) -> None:
                     assignment=assignment,
                     packages=course.packages(assignment),
                 )
-                with in_sentences(course):
+                with raise_gradebook_errors(course):
                     wait_until_free(course)
-                    _finish(course, submission, nbformat.read(journal, as_version=4))
+                    _store_all(course, submission, nbformat.read(journal, as_version=4))
             except GradebookError:
                 raise
             except Exception:  # for example because the lesson has changed: it is graded again
@@ -117,7 +122,7 @@ def recover(course: Course) -> None:
                 journal.unlink()
 
 
-def _finish(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
+def _store_all(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
     """Store what is in the journal; doing it again is the same as doing it once."""
     student, assignment = submission.student_id, submission.assignment
     at = resources_of(course, assignment, student)
@@ -125,7 +130,7 @@ def _finish(course: Course, submission: Submission, graded: NotebookNode) -> Not
     graded = nbformat.from_dict(graded)
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
     folder = course.folder('autograded', student, assignment)
-    saved = finish(graded, at)
+    saved = store_scores(graded, at)
     write_whole(folder / f'{assignment}.ipynb', nbformat.v4.writes(saved))
     _journal(course, submission).unlink()
     return saved
@@ -156,15 +161,15 @@ def _journal(course: Course, submission: Submission) -> Path:
 
 
 @contextmanager
-def opened(course: Course) -> Iterator[Gradebook]:
+def open_gradebook(course: Course) -> Iterator[Gradebook]:
     """Open the database for reading, after every assignment of the course was registered."""
     recover(course)
     register_all(course)
     recount_late_penalties(course)
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         yield book
 
 
-def waits_for_a_person(grade: Grade) -> bool:
+def needs_manual_grade(grade: Grade) -> bool:
     """Whether the cell has neither an automatic nor a manual score."""
     return grade.auto_score is None and grade.manual_score is None

@@ -16,7 +16,7 @@ from traitlets import Any, Type
 
 from grader.course import Course
 from grader.storage.deadlines import Deadlines, deadlines
-from grader.storage.lateness import tell_what_is_due
+from grader.storage.lateness import store_due_date
 
 _SILENT = logging.getLogger(__name__)
 """The penalty is shown with the score; nbgrader would also log it for each notebook."""
@@ -46,6 +46,6 @@ class LatePenalties(AssignLatePenalties):
         gradebook = Course.of_nbgrader(resources).gradebook
         self.deadlines = deadlines(gradebook) or Deadlines()
         # nbgrader would open the database again, and most submissions are in time
-        if tell_what_is_due(gradebook, at['db_url'], assignment, student):
+        if store_due_date(gradebook, at['db_url'], assignment, student):
             return super().preprocess(nb, resources)
         return nb, resources

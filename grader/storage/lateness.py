@@ -9,7 +9,7 @@ from sqlalchemy import bindparam, func, or_, select
 from sqlalchemy.orm import contains_eager, joinedload
 
 from grader.course import Course
-from grader.storage.database import connected
+from grader.storage.database import open_database
 from grader.storage.deadlines import Deadlines, deadlines
 from grader.storage.lock import gradebook_lock
 
@@ -63,10 +63,10 @@ _EXTENDED = (
 """Submissions with an extension, in the database or in the file."""
 
 
-def tell_what_is_due(gradebook: Path, db_url: str, assignment: str, student_id: str) -> bool:
+def store_due_date(gradebook: Path, db_url: str, assignment: str, student_id: str) -> bool:
     """Store a submission's due date; return whether it is late, or has a late penalty."""
     found = deadlines(gradebook)
-    with connected(db_url) as book:
+    with open_database(db_url) as book:
         whose = {'assignment': assignment, 'student': student_id}
         submission = book.db.execute(_SUBMISSION, whose).unique().scalar_one()
         if found:  # without a file, the dates that nbgrader was given stay
@@ -84,19 +84,19 @@ def recount_late_penalties(course: Course) -> None:
     given stay.
     """
     found = deadlines(course.gradebook)
-    with connected(course.db_url) as book:
-        if not any(_moved(book, found)) and not any(_outdated(book, found)):
+    with open_database(course.db_url) as book:
+        if not any(_changed_dates(book, found)) and not any(_wrong_penalties(book, found)):
             return
-    with gradebook_lock(course.gradebook), connected(course.db_url) as book:
-        for row, column, when in [*_moved(book, found)]:
+    with gradebook_lock(course.gradebook), open_database(course.db_url) as book:
+        for row, column, when in [*_changed_dates(book, found)]:
             setattr(row, column, when)
         book.db.flush()  # before the query for late submissions
-        for notebook, penalty in _outdated(book, found):
+        for notebook, penalty in _wrong_penalties(book, found):
             notebook.late_submission_penalty = penalty
         book.db.commit()
 
 
-def _moved(
+def _changed_dates(
     book: Gradebook, found: Deadlines | None
 ) -> Iterator[tuple[Assignment | SubmittedAssignment, str, datetime | timedelta | None]]:
     """Yield what differs from the file's dates: the row, its column, and the file's date."""
@@ -112,7 +112,7 @@ def _moved(
             yield submission, 'extension', extension
 
 
-def _outdated(
+def _wrong_penalties(
     book: Gradebook, found: Deadlines | None
 ) -> Iterator[tuple[SubmittedNotebook, float | None]]:
     """Yield notebooks whose penalty is wrong for their score, and the right penalty."""

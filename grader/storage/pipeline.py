@@ -35,18 +35,20 @@ AUTOGRADE_PASSES = (
 """What nbgrader applies next, to run the notebook and store its scores."""
 
 
-def apply(passes: Sequence[str], notebook: NotebookNode, resources: dict) -> NotebookNode:
+def apply_preprocessors(
+    passes: Sequence[str], notebook: NotebookNode, resources: dict
+) -> NotebookNode:
     """Apply preprocessors, given by name, to a notebook as nbgrader would; return the result."""
     _, changed = normalize(notebook)  # a copy
     resources = copy.deepcopy(resources)
-    for each in _made(tuple(passes)):
+    for each in _make_preprocessors(tuple(passes)):
         changed, resources = each(changed, resources)
         nbformat.validate(changed, relax_add_props=True)
     return changed
 
 
 @cache
-def _made(passes: tuple[str, ...]) -> 'tuple[Preprocessor, ...]':
+def _make_preprocessors(passes: tuple[str, ...]) -> 'tuple[Preprocessor, ...]':
     """Make preprocessors as nbconvert's Exporter would; cached, because that is slow."""
     # imported late, a third of a second: what is graded already needs no preprocessors
     from nbconvert.preprocessors import Preprocessor  # noqa: F401
@@ -77,42 +79,43 @@ def resources_of(course: Course, assignment: str, student_id: str = '.') -> dict
     }
 
 
-def prepare(course: Course, assignment: str, restored: NotebookNode) -> NotebookNode:
+def sanitize_restored(course: Course, assignment: str, restored: NotebookNode) -> NotebookNode:
     """Do to a restored notebook what nbgrader does first: checksums, kernel, metadata."""
-    return apply(
-        _after('grader.autograde.preprocessors.RestoreSubmission', SANITIZE_PASSES),
+    return apply_preprocessors(
+        _passes_after('grader.autograde.preprocessors.RestoreSubmission', SANITIZE_PASSES),
         restored,
         resources_of(course, assignment),
     )
 
 
-def prepared_template(course: Course, assignment: str) -> AssignmentTemplate:
-    """Return the template of an assignment's submissions, after `prepare`.
+def make_sanitized_template(course: Course, assignment: str) -> AssignmentTemplate:
+    """Return the template of an assignment's submissions, after `sanitize_restored`.
 
-    A notebook restored from it need not be prepared: `prepare` only changes cells of the template.
+    A notebook restored from it need not be sanitized: only cells of the template are changed.
     """
-    return prepare_template(course, assignment, course.template(assignment))
+    return sanitize_template(course, assignment, course.template(assignment))
 
 
-def prepare_template(
+def sanitize_template(
     course: Course, assignment: str, template: AssignmentTemplate
 ) -> AssignmentTemplate:
-    """Apply `prepare` to a template, once for all submissions that are restored from it."""
-    return replace(template, notebook=prepare(course, assignment, template.notebook))
+    """Sanitize a template, once for all submissions that are restored from it."""
+    return replace(template, notebook=sanitize_restored(course, assignment, template.notebook))
 
 
-def finish(executed: NotebookNode, resources: dict) -> NotebookNode:
+def store_scores(executed: NotebookNode, resources: dict) -> NotebookNode:
     """Do to an executed notebook, in place, what nbgrader does next: store the scores.
 
     Raises ValidationError, and stores nothing, if it is not a valid notebook.
     """
     nbformat.validate(executed, relax_add_props=True)
-    for each in _made(_after('grader.autograde.preprocessors.ExecuteRooms', AUTOGRADE_PASSES)):
+    passes = _passes_after('grader.autograde.preprocessors.ExecuteRooms', AUTOGRADE_PASSES)
+    for each in _make_preprocessors(passes):
         executed, resources = each(executed, resources)
     return executed
 
 
-def unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
+def make_unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
     """Return a notebook for a submission that can't be graded: unanswered, with the reason.
 
     The template is a prepared one.
@@ -139,5 +142,5 @@ def first_reason(graded: NotebookNode) -> str:
     return ''
 
 
-def _after(name: str, passes: tuple[str, ...]) -> tuple[str, ...]:
+def _passes_after(name: str, passes: tuple[str, ...]) -> tuple[str, ...]:
     return passes[passes.index(name) + 1 :]

@@ -98,8 +98,8 @@ def make_tables(db_url: str) -> None:
         encoding = connection.execute(text('SHOW server_encoding')).scalar()
         if encoding != 'UTF8':
             raise GradebookError(
-                f'{shown(db_url)} has the encoding {encoding}, in which not every name can be '
-                f'written. {_MAKE.format(name=make_url(db_url).database)}'
+                f'{url_to_show(db_url)} has the encoding {encoding}, in which not every name '
+                f'can be written. {_MAKE.format(name=make_url(db_url).database)}'
             )
         connection.execute(text(f'SELECT pg_advisory_xact_lock({_MAKING})'))
         if _has_tables(connection):  # another process has made them while this one waited
@@ -111,7 +111,7 @@ def make_tables(db_url: str) -> None:
         connection.execute(Course.__table__.insert().values(id='default_course'))
 
 
-def wait_until_there(db_url: str, timeout_sec: float, say: Callable[[str], None]) -> None:
+def wait_until_available(db_url: str, timeout_sec: float, say: Callable[[str], None]) -> None:
     """Wait while the server does not answer, for example during a restart, and say so.
 
     Raises the connection's error after `timeout_sec`, or at once if waiting can't help.
@@ -125,23 +125,23 @@ def wait_until_there(db_url: str, timeout_sec: float, say: Callable[[str], None]
             if _fault_of(error) is not _AWAY or time.monotonic() > deadline:
                 raise
             if not said:
-                say(f'waiting: {shown(db_url)} does not answer ({_cause(error, db_url)})')
+                say(f'waiting: {url_to_show(db_url)} does not answer ({_cause(error, db_url)})')
                 said = True
         time.sleep(0.2)
 
 
-def sentence_of(error: BaseException, db_url: str) -> str | None:
+def message_of(error: BaseException, db_url: str) -> str | None:
     """Return the message for an error, or None if it does not come from the database."""
     if isinstance(error, ModuleNotFoundError) and error.name == 'psycopg':
         return (
-            f'{shown(db_url)} needs psycopg, which this Python lacks: install it with '
+            f'{url_to_show(db_url)} needs psycopg, which this Python lacks: install it with '
             '.venv/bin/python -m pip install -r environment.txt'
         )
     if not isinstance(error, DBAPIError) or not (fault := _fault_of(error)):
         return None
     return (
         fault.sentence.format(
-            where=shown(db_url), name=make_url(db_url).database, cause=_cause(error, db_url)
+            where=url_to_show(db_url), name=make_url(db_url).database, cause=_cause(error, db_url)
         ).rstrip('.')
         + '.'
     )
@@ -155,7 +155,7 @@ def state_of(db_url: str) -> str:
         return ' '.join(map(str, connection.execute(text(query)).one()))
 
 
-def shown(db_url: str) -> str:
+def url_to_show(db_url: str) -> str:
     """Return a database's URL as it may be shown: without the password."""
     url = make_url(db_url)
     shorter = URL.create(

@@ -24,8 +24,8 @@ from grader.common.errors import DamagedResult
 from grader.course import Course
 from grader.notebook.own_files import parsed
 from grader.notebook.restore import KEY, grade_id
-from grader.storage.database import connected
-from grader.storage.gradebook import opened, waits_for_a_person
+from grader.storage.database import open_database
+from grader.storage.gradebook import needs_manual_grade, open_gradebook
 from grader.storage.lesson_checksums import checksums
 from grader.storage.registering import withdrawn_unseen
 
@@ -56,14 +56,14 @@ def records(course: Course, *, only: Collection[tuple[str, str]] | None = None) 
     A lesson that is no longer in solutions/ is left out, unless a student has a score for it.
     `only` selects some graded submissions, as pairs of student and assignment.
     """
-    with opened(course) if only is None else connected(course.db_url) as book:
+    with open_gradebook(course) if only is None else open_database(course.db_url) as book:
         cells_of = _cells_of(course, book, only)
         students = sorted(book.db.scalars(select(Student.id)))
         asked = {*only} if only is not None else {*product(students, cells_of)}
         found: dict[tuple[str, str], list[CellScore]] = {}
         for assignment, cells in cells_of.items():
             whose = [student for student in students if (student, assignment) in asked]
-            graded = _graded(book, assignment, whose)
+            graded = _stored_notebooks(book, assignment, whose)
             for student in whose:
                 scores = _scores(student, assignment, cells, graded.get(student))
                 found[student, assignment] = [*scores]
@@ -117,7 +117,7 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
         raise DamagedResult(f'the graded notebook {path} is damaged: {again}') from None
 
 
-def _graded(
+def _stored_notebooks(
     book: Gradebook, assignment: str, students: Sequence[str]
 ) -> dict[str, SubmittedNotebook]:
     """Return an assignment's stored notebooks by student, in a few queries."""
@@ -156,7 +156,7 @@ def _scores(
             student_id=student,
             assignment=assignment,
             grade_id=cell.name,
-            score=grade.score if grade and not waits_for_a_person(grade) else None,
+            score=grade.score if grade and not needs_manual_grade(grade) else None,
             max_score=cell.max_score,
             submitted=found is not None,
             by_hand=bool(grade and grade.manual_score is not None),

@@ -12,9 +12,9 @@ from sqlalchemy import func, select
 
 from grader.common.errors import CourseError
 from grader.course import Course
-from grader.storage.database import connected, make_database
-from grader.storage.lesson_checksums import SAVE_CELLS, checksums, tidied
-from grader.storage.pipeline import apply, resources_of
+from grader.storage.database import make_database, open_database
+from grader.storage.lesson_checksums import SAVE_CELLS, checksums, lesson_to_register
+from grader.storage.pipeline import apply_preprocessors, resources_of
 
 
 def register(course: Course, assignment: str) -> bool:
@@ -24,7 +24,7 @@ def register(course: Course, assignment: str) -> bool:
     """
     wanted = checksums(course, assignment)
     make_database(course)
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         known = _checksums_in(book, assignment)
         if known == wanted:
             return False
@@ -40,7 +40,9 @@ def register(course: Course, assignment: str) -> bool:
                 'begin a new one.'
             )
         book.update_or_create_assignment(assignment)
-    apply((SAVE_CELLS,), tidied(course, assignment), resources_of(course, assignment))
+    apply_preprocessors(
+        (SAVE_CELLS,), lesson_to_register(course, assignment), resources_of(course, assignment)
+    )
     return True
 
 
@@ -58,7 +60,7 @@ def register_all(course: Course) -> None:
         .where(Notebook.name == Assignment.name)
     )
     known: dict[str, dict[str, str]] = {}
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         for assignment, name, checksum in book.db.execute(asked):
             known.setdefault(assignment, {})[name] = checksum
     for assignment, cells in wanted.items():

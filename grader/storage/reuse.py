@@ -13,18 +13,18 @@ from grader.course import Course
 from grader.notebook.own_files import parsed
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import TIMESTAMP, Submission
-from grader.storage.database import connected
+from grader.storage.database import open_database
 from grader.storage.gradebook import StoredResult
 from grader.storage.held_scores import auto_scores, held_score
-from grader.storage.lateness import tell_what_is_due
-from grader.storage.pipeline import apply, first_reason, resources_of
+from grader.storage.lateness import store_due_date
+from grader.storage.pipeline import apply_preprocessors, first_reason, resources_of
 
 LATE = ('grader.storage.late_penalties.LatePenalties',)
 """The penalty is computed again: a due date may have moved, and results don't depend on it."""
 _UNDER = 'graded_under'
 
 
-def conditions(course: Course, assignment: str, *, isolated: bool) -> str:
+def conditions_digest(course: Course, assignment: str, *, isolated: bool) -> str:
     """Return a hash of all that the results of all students of an assignment depend on."""
     lesson = [
         _cells_without_outputs(course.source(assignment)),
@@ -43,7 +43,7 @@ def key_of(submission: Submission, given: str, *, seed: str) -> str:
     return _digest(json.dumps(parts).encode())
 
 
-def remember(graded: NotebookNode, key: str) -> None:
+def write_key(graded: NotebookNode, key: str) -> None:
     """Write the key into a graded notebook; it is stored with the result."""
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []}))[_UNDER] = key
 
@@ -69,12 +69,12 @@ def refresh_late_penalty(
     Manual scores stay. Returns None if the gradebook's scores are not those of the result.
     """
     student, assignment = submission.student_id, submission.assignment
-    with connected(course.db_url) as book:
+    with open_database(course.db_url) as book:
         former = now = held_score(book, student, assignment)
         if former is None or not _agree(auto_scores(book, student, assignment), graded):
             return None
-        if tell_what_is_due(course.gradebook, course.db_url, assignment, student):
-            apply(LATE, graded, resources_of(course, assignment, student))
+        if store_due_date(course.gradebook, course.db_url, assignment, student):
+            apply_preprocessors(LATE, graded, resources_of(course, assignment, student))
             now = held_score(book, student, assignment)
     assert now is not None  # as before
     return StoredResult(

@@ -52,14 +52,14 @@ class SubmissionRows:
 
     def find_grade(self, cell: str | None, *_: str) -> Grade:
         """Return the row of a graded cell. Raises MissingEntry as nbgrader does."""
-        return _found(self._grades, cell)
+        return _row_of(self._grades, cell)
 
     def find_comment(self, cell: str | None, *_: str) -> Comment:
         """Return the row of an answer cell. Raises MissingEntry as nbgrader does."""
-        return _found(self._comments, cell)
+        return _row_of(self._comments, cell)
 
 
-def _found(rows: dict[str, Row], cell: str | None) -> Row:
+def _row_of(rows: dict[str, Row], cell: str | None) -> Row:
     if cell not in rows:
         raise MissingEntry(f'No such cell of this submission: {cell}')
     return rows[cell]

@@ -8,7 +8,7 @@ from nbformat import NotebookNode
 from grader.judging.task import GradingTask, Result
 from grader.notebook.restore import KEY, AssignmentTemplate, restore
 from grader.notebook.submission import Submission
-from grader.storage.pipeline import unanswered
+from grader.storage.pipeline import make_unanswered
 
 
 class Backend(Protocol):
@@ -49,7 +49,7 @@ def submit_for_grading(
     """Restore a submission from a prepared template; have it run with the inputs of a seed."""
     if submission.problem:
         nothing: Future[Result] = Future()
-        nothing.set_result(Result(unanswered(template, submission.problem), 0.0))
+        nothing.set_result(Result(make_unanswered(template, submission.problem), 0.0))
         return nothing
     return backend.submit(
         GradingTask(

@@ -28,7 +28,7 @@ from grader.judging.execute import execute
 from grader.kernels.kernels import GradingKernel
 from grader.kernels.rooms import GradingRooms
 from grader.notebook.restore import restore, role
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.registering import register
 
 NAMES = (
@@ -101,7 +101,7 @@ def main(runs: int = 3) -> None:
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
         submitted = nbformat.read(PATHS[name], as_version=4)
-        restored = prepare(
+        restored = sanitize_restored(
             course, assignment, restore(submitted, course.template(assignment)).notebook
         )
         shorter = without_demonstrations(restored)

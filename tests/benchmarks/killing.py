@@ -18,7 +18,7 @@ from nbgrader.api import Gradebook
 from synthetic_class import Paper
 
 from grader.collect.collect import collect
-from grader.storage.gradebook import waits_for_a_person
+from grader.storage.gradebook import needs_manual_grade
 from grader.storage.records import records, verdicts
 
 MOST_SHOWN = 20
@@ -81,7 +81,7 @@ def read_answers(course: Course, but: set[str] = frozenset()) -> set[str]:
         for notebook in (each for submission in submissions for each in submission.notebooks):
             student, assignment = notebook.student.id, notebook.assignment.assignment.name
             for grade in notebook.grades:
-                if student in but or grade.cell_type == 'code' or not waits_for_a_person(grade):
+                if student in but or grade.cell_type == 'code' or not needs_manual_grade(grade):
                     continue
                 points = (sum(student.encode()) % 5) / 4 * grade.max_score
                 grade.manual_score, grade.needs_manual_grade = points, False

@@ -23,7 +23,7 @@ from grader.course import Course
 from grader.judging import execute as module
 from grader.kernels.isolation import require_isolation
 from grader.notebook.restore import restore
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.registering import register
 
 NAMES = (
@@ -45,7 +45,7 @@ def main(runs: int = 5) -> None:
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
         submitted = nbformat.read(PATHS[name], as_version=4)
-        restored = prepare(
+        restored = sanitize_restored(
             course, assignment, restore(submitted, course.template(assignment)).notebook
         )
         times: dict[bool, list[float]] = defaultdict(list)

@@ -81,7 +81,7 @@ def store_all(root: Path, source: Path) -> dict:
 
     from grader.course import Course
     from grader.notebook.submission import read_submission
-    from grader.storage.database import one_engine
+    from grader.storage.database import share_engine
     from grader.storage.gradebook import store
     from grader.storage.lock import gradebook_lock
     from grader.storage.registering import register_all
@@ -101,7 +101,7 @@ def store_all(root: Path, source: Path) -> dict:
             )
             work.append((submission, path))
         taken: dict[str, list[tuple[float, float]]] = {FIRST: [], MORE: []}
-        with one_engine(course.db_url):
+        with share_engine(course.db_url):
             for each in taken.values():
                 for submission, path in work:
                     graded = nbformat.read(path, as_version=4)

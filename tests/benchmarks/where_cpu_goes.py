@@ -24,9 +24,9 @@ from grader.kernels.isolation import require_isolation
 from grader.kernels.kernels import GradingKernel
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
-from grader.storage.database import one_engine
+from grader.storage.database import share_engine
 from grader.storage.gradebook import store
-from grader.storage.pipeline import prepared_template
+from grader.storage.pipeline import make_sanitized_template
 from grader.storage.registering import register
 
 NAMES = (
@@ -82,7 +82,7 @@ def grade(course: Course, name: str, number: int) -> None:
     folder = course.folder('submitted', student, assignment)
     folder.mkdir(parents=True)
     (folder / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
-    template = prepared_template(course, assignment)
+    template = make_sanitized_template(course, assignment)
     parts = [time.process_time()]
     submission = read_submission(folder, student_id=student, assignment=assignment)
     restored = restore(submission.notebook, template).notebook
@@ -105,7 +105,7 @@ def main(runs: int = 3) -> None:
     watch('start', lambda *_: START)
     watch('run', lambda code, *_: PROBE if 'probe' in code else REST)
     watch('stop', lambda *_: REST, first=True)
-    with one_engine(course.db_url):
+    with share_engine(course.db_url):
         grade(course, NAMES[0], 0)  # starts the fork servers
         used.clear()
         children, number = _of_children(), 0

@@ -33,7 +33,7 @@ from grader.kernels.provisioner import SandboxProvisioner
 from grader.kernels.rooms import GradingRooms
 from grader.notebook.restore import restore
 from grader.sandbox.sandbox import Sandbox
-from grader.storage.pipeline import prepare
+from grader.storage.pipeline import sanitize_restored
 from grader.storage.registering import register
 
 NAMES = (
@@ -98,7 +98,7 @@ def judge(course: Course) -> list[dict[str, float]]:
     for name in NAMES:
         assignment = assignment_of(PATHS[name])
         submitted = nbformat.read(PATHS[name], as_version=4)
-        restored = prepare(
+        restored = sanitize_restored(
             course, assignment, restore(submitted, course.template(assignment)).notebook
         )
         execute.execute(restored)
