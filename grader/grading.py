@@ -10,12 +10,12 @@ from nbformat import NotebookNode
 
 from grader.collect.submission_folders import contents
 from grader.common.errors import ClusterError, GradebookError, TaskFailed
-from grader.common.futures import completed, then
+from grader.common.futures import completed_future, then
 from grader.common.text import printable
 from grader.course import Course
 from grader.judging.task import Result
 from grader.notebook.restore import AssignmentTemplate
-from grader.notebook.submission import Submission, unread_submission, with_notebook
+from grader.notebook.submission import Submission, read_notebook_of, unread_submission
 from grader.storage.failures import raise_gradebook_errors
 from grader.storage.gradebook import StoredResult, store
 from grader.storage.lock import gradebook_lock
@@ -121,12 +121,12 @@ class Grading:
         key = key_of(submission, prepared.conditions, seed=its_seed)
         earlier = self._earlier(submission, key)
         if earlier is None:  # else the same bytes were read then, and need not be read again
-            submission = with_notebook(submission)
+            submission = read_notebook_of(submission)
             if submission.problem:
                 key = key_of(submission, prepared.conditions, seed=its_seed)
                 earlier = self._earlier(submission, key)
         if earlier:
-            return completed(GradedSubmission(submission, earlier, files))
+            return completed_future(GradedSubmission(submission, earlier, files))
         if not submission.problem:
             self.backend.begin()  # workers start while the first template is prepared
         judged = submit_for_grading(  # restores it here; runs and judges it in a worker

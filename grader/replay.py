@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from grader.common.asked import RECORDED
+from grader.common.argument_values import RECORDED
 from grader.common.errors import CourseError
 from grader.common.text import printable
 from grader.course import Course

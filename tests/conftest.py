@@ -20,7 +20,7 @@ from hypothesis import HealthCheck, settings
 from my_robot_basics.session import classroom
 
 from grader.authoring import release
-from grader.kernels.isolation import TRUST, missing
+from grader.kernels.isolation import TRUST, missing_protection
 from tests import ordinary, preloaded, tiers  # absolute, as nbval runs with this as a plugin, too
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list) -> None:
     if shard := config.getoption('--shard'):
         config.hook.pytest_deselected(items=tiers.keep_shard(items, shard))
 
-    if config.getoption('--no-isolation') and missing():
+    if config.getoption('--no-isolation') and missing_protection():
         config.stash[UNTESTED] = [item for item in items if item.get_closest_marker('isolation')]
         items[:] = [item for item in items if item not in config.stash[UNTESTED]]
         config.hook.pytest_deselected(items=config.stash[UNTESTED])
@@ -120,16 +120,18 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         # its kernel starts next: it must not see what another lesson has built
         workspace = item.config.stash[FOLDERS][0] / item.path.stem
         os.environ['MY_ROBOT_BASICS_WORKSPACE'] = str(workspace)
-    if item.get_closest_marker('isolation') and missing():
-        pytest.fail(f'{missing()}. Or leave these tests out: --no-isolation', pytrace=False)
+    if item.get_closest_marker('isolation') and missing_protection():
+        pytest.fail(
+            f'{missing_protection()}. Or leave these tests out: --no-isolation', pytrace=False
+        )
 
 
 def pytest_terminal_summary(terminalreporter: object, config: pytest.Config) -> None:
-    if config.getoption('--no-isolation') and missing():
+    if config.getoption('--no-isolation') and missing_protection():
         # xdist's workers know the number, but only the main process prints a summary
         untested = len(config.stash.get(UNTESTED, [])) or 'all'
         terminalreporter.section('not tested', yellow=True)
-        terminalreporter.line(f'{untested} tests of the sandbox: {missing()}')
+        terminalreporter.line(f'{untested} tests of the sandbox: {missing_protection()}')
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -9,7 +9,7 @@ from course_maker import TOY, released_course, submit
 
 from grader.__main__ import main
 from grader.cli.arguments import make_parser
-from grader.common.asked import PLATFORMS
+from grader.common.argument_values import PLATFORMS
 from grader.course import ROOT
 from grader.passback.write import TABLES
 from grader.storage.lesson_checksums import FOLDER

@@ -20,7 +20,7 @@ from grader.storage.records import records
 from grader.storage.submitted import find_submissions
 from grader.workers import dask_backend
 from grader.workers.dask_backend import Cluster
-from grader.workers.dask_client import Certificates, connected
+from grader.workers.dask_client import Certificates, connect
 from grader.workers.workers import Workers
 
 LOCALLY = (sys.executable, str(TESTS / 'toy_worker.py'))
@@ -157,7 +157,7 @@ def test_leaving_a_cluster_cancels_its_running_and_waiting_tasks(
 ):
     start_worker(start, scheduler.address)
     task = GradingTask(notebook=answered(course, f'# wait {tmp_path / "go"}\n{RIGHT}'), seed='abc')
-    with connected(scheduler.address, Certificates()) as onlooker:
+    with connect(scheduler.address, Certificates()) as onlooker:
 
         def known():
             return onlooker.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks))
@@ -172,7 +172,7 @@ def test_leaving_a_cluster_cancels_its_running_and_waiting_tasks(
 def test_a_client_that_has_given_up_its_scheduler_is_no_longer_watched(monkeypatch):
     monkeypatch.setattr(dask_backend, 'LOOK_SEC', 0.0)
     its = SimpleNamespace(_left=Event(), _address='', _client=SimpleNamespace(scheduler_info=dict))
-    Cluster._look_after(its)  # returns, and says nothing
+    Cluster._warn_without_workers(its)  # returns, and says nothing
     assert not its._left.is_set()
 
 

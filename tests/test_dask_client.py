@@ -4,7 +4,7 @@ import pytest
 
 from grader.__main__ import main
 from grader.common.errors import ClusterError
-from grader.workers.dask_client import Certificates, check_address, connected
+from grader.workers.dask_client import Certificates, check_address, connect
 
 
 @pytest.mark.parametrize(
@@ -47,19 +47,19 @@ def test_an_invalid_address_is_reported(address):
 
 def test_tls_needs_certificates(tmp_path):
     with pytest.raises(ClusterError, match='needs certificates'):
-        connected('tls://127.0.0.1:1', Certificates(ca_file='ca.pem', cert='cert.pem'))
+        connect('tls://127.0.0.1:1', Certificates(ca_file='ca.pem', cert='cert.pem'))
 
 
 def test_a_missing_scheduler_is_reported(monkeypatch):
     monkeypatch.setattr('grader.workers.dask_client.CONNECT_TIMEOUT_SEC', 0.1)
     with pytest.raises(ClusterError, match=r'no scheduler at tcp://127.0.0.1:1 that answers'):
-        connected('tcp://127.0.0.1:1', Certificates())
+        connect('tcp://127.0.0.1:1', Certificates())
 
 
 def test_a_missing_dask_is_reported_with_the_command_that_installs_it(monkeypatch):
     monkeypatch.setitem(sys.modules, 'distributed', None)
     with pytest.raises(ClusterError, match=r'pip install -r environment\.txt'):
-        connected('tcp://127.0.0.1:1', Certificates())
+        connect('tcp://127.0.0.1:1', Certificates())
 
 
 @pytest.mark.parametrize(

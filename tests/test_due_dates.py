@@ -6,7 +6,7 @@ import pytest
 from course_maker import TOY, make_course
 
 from grader.__main__ import main
-from grader.common.asked import local_time
+from grader.common.argument_values import local_time
 from grader.storage.deadlines import FILE, deadlines
 
 

@@ -21,7 +21,7 @@ from grader.kernels.isolation import (
     NO_SANDBOX,
     TRUST,
     Protection,
-    missing,
+    missing_protection,
     protections,
     require_isolation,
 )
@@ -75,7 +75,7 @@ def refusing(*options, says='Operation not permitted'):
 
 @pytest.mark.isolation
 def test_the_test_machine_can_isolate_rooms():
-    assert missing() == ''
+    assert missing_protection() == ''
     assert require_isolation()
     assert len(protections()) == 7
 
@@ -118,8 +118,8 @@ REFUSALS = {
 @pytest.mark.parametrize(('option', 'name'), REFUSALS.values(), ids=REFUSALS)
 def test_only_the_missing_protection_is_reported(monkeypatch, option, name):
     monkeypatch.setattr(module.subprocess, 'run', refusing(option))
-    assert f'Missing: {name}' in missing()
-    assert 'Operation not permitted' in missing()
+    assert f'Missing: {name}' in missing_protection()
+    assert 'Operation not permitted' in missing_protection()
     assert sum(bool(protection.problem) for protection in protections()) == 1
 
 
@@ -135,8 +135,8 @@ def test_the_remedy_fits_what_the_system_forbids(monkeypatch, setting, said):
     value, remedy = said
     monkeypatch.setattr(remedies, '_setting', lambda name: value if name == setting else '')
     monkeypatch.setattr(module.subprocess, 'run', refusing('--unshare-user'))
-    assert f'sudo sysctl -w {setting.replace("/", ".").rpartition(".")[0]}' in missing()
-    assert remedy in missing()
+    assert f'sudo sysctl -w {setting.replace("/", ".").rpartition(".")[0]}' in missing_protection()
+    assert remedy in missing_protection()
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_the_remedy_fits_the_kind_of_machine(monkeypatch, what, said):
     wsl = '4.4.0-19041-Microsoft' if what == 'WSL' else '6.1.0'
     monkeypatch.setattr(remedies.platform, 'release', lambda: wsl)
     monkeypatch.setattr(module.subprocess, 'run', refusing('--unshare-user'))
-    assert said in missing()
+    assert said in missing_protection()
 
 
 def test_an_old_bubblewrap_is_not_enough(monkeypatch):
@@ -161,13 +161,13 @@ def test_an_old_bubblewrap_is_not_enough(monkeypatch):
         return SimpleNamespace(returncode=0, stdout='bubblewrap 0.6.1\n', stderr='')
 
     monkeypatch.setattr(module.subprocess, 'run', run)
-    assert 'bubblewrap 0.8 or newer: this one is bubblewrap 0.6.1' in missing()
+    assert 'bubblewrap 0.8 or newer: this one is bubblewrap 0.6.1' in missing_protection()
 
 
 def test_a_sandbox_that_fails_as_a_whole_is_reported_as_missing(monkeypatch):
     monkeypatch.setattr('grader.sandbox.bubblewrap._HOLD', 'echo no mounts >&2; exit 1')
-    assert 'all of it together' in missing()
-    assert 'no mounts' in missing()
+    assert 'all of it together' in missing_protection()
+    assert 'no mounts' in missing_protection()
 
 
 def test_no_student_code_runs_without_a_sandbox(course, nowhere, capsys, tmp_path):
@@ -179,8 +179,8 @@ def test_no_student_code_runs_without_a_sandbox(course, nowhere, capsys, tmp_pat
     assert '--trust-students' in said
     assert main(['doctor'], course=course) == 1
     told = capsys.readouterr().out
-    assert missing()[1:] in told  # the same text
-    assert missing() in said
+    assert missing_protection()[1:] in told  # the same text
+    assert missing_protection() in said
     assert not ran.exists()
     with pytest.raises(CourseError, match='nothing was run'):
         require_isolation()

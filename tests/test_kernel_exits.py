@@ -391,9 +391,9 @@ ENDINGS = [
 
 @pytest.mark.parametrize(('ending', 'memory', 'responsibility'), ENDINGS)
 def test_students_are_responsible_only_for_endings_shown_as_theirs(ending, memory, responsibility):
-    assert ending.whose(memory)[0] is responsibility
+    assert ending.responsibility(memory)[0] is responsibility
 
 
 def test_students_are_responsible_for_too_much_processor_time():
     ending = Ending(9, cpu_sec=max(PROCESS_LIMITS.values()))
-    assert ending.whose(NO_MEMORY_LOST)[0] is Responsibility.STUDENTS
+    assert ending.responsibility(NO_MEMORY_LOST)[0] is Responsibility.STUDENTS

@@ -136,7 +136,7 @@ def test_a_damaged_secret_is_named(tmp_path, capsys, kept):
 
 
 def test_the_error_about_a_missing_sandbox_announces_a_note_on_feedback_pages(monkeypatch):
-    monkeypatch.setattr(isolation, 'missing', lambda: 'there is none')
+    monkeypatch.setattr(isolation, 'missing_protection', lambda: 'there is none')
     with pytest.raises(CourseError, match=r'--trust-students\. Each feedback page will say so\.'):
         isolation.require_isolation()
 

@@ -154,7 +154,7 @@ def test_python_files_go_with_the_notebooks_of_one_student(at):
 
 def test_unreadable_files_matter_and_files_of_other_types_do_not(at):
     _, left = match([at('a.zip', problem='broken'), at('ada/notes.txt')], ASSIGNMENTS)
-    assert [(each.reason, each.matters) for each in left] == [
+    assert [(each.reason, each.needs_attention) for each in left] == [
         ('broken', True),
         ('neither a notebook nor Python', False),
     ]

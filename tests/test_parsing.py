@@ -93,7 +93,7 @@ def test_a_cancelled_question_ends_and_the_next_question_is_answered():
         waiting = threads.submit(parse, 'time:sleep', 60, limits=Limits(wall_sec=20))
         while not parsing._SERVERS._busy:
             time.sleep(0.01)
-        parsing.call_off()
+        parsing.cancel_requests()
         with pytest.raises((CourseError, BrokenPipeError)):
             waiting.result()
     assert parse('json:loads', '1') == 1

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from grader.cli.verbs import NO_DATE
-from grader.common.asked import RECORDED, local_time
+from grader.common.argument_values import RECORDED, local_time
 
 
 class VerbParser(argparse.ArgumentParser):

@@ -10,7 +10,7 @@ from my_robot_basics.language.catalogues import ENGLISH, LOCALE, languages
 
 from grader.cli import verbs
 from grader.cli.argument_types import VerbParser, at_least_one, date, hexadecimal
-from grader.common.asked import PLATFORMS, RECORDED
+from grader.common.argument_values import PLATFORMS, RECORDED
 
 
 def make_parser() -> argparse.ArgumentParser:

@@ -3,7 +3,7 @@
 import argparse
 
 from grader.common.errors import CourseError
-from grader.common.lean_imports import uncollected
+from grader.common.lean_imports import pause_garbage_collection
 from grader.course import Course
 from grader.storage.submitted import find_submissions, is_new
 from grader.workers.backend import Backend
@@ -21,7 +21,7 @@ def run_grade(course: Course, asked: argparse.Namespace) -> int:
     with Workers(asked.workers) as workers:
         if asked.force or asked.seed or any(is_new(course, each) for each in found):
             workers.begin()
-        with uncollected():
+        with pause_garbage_collection():
             from grader.cli import grade_verb
         return grade_verb.run_grade(course, asked, found, workers)
 

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Sequence
 from datetime import datetime
 
-from grader.common.asked import RECORDED
+from grader.common.argument_values import RECORDED
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grade import grade_all

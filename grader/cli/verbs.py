@@ -95,10 +95,10 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
 
 def begin_grade(asked: argparse.Namespace) -> None:
     """Begin to try the sandbox in a thread: it mostly waits, and imports go on meanwhile."""
-    from grader.kernels.isolation import look_ahead
+    from grader.kernels.isolation import try_in_background
 
     if not asked.dask:
-        look_ahead()
+        try_in_background()
 
 
 def run_grade(course: 'Course', asked: argparse.Namespace) -> int:

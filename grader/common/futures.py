@@ -10,7 +10,7 @@ Value = TypeVar('Value')
 Result = TypeVar('Result')
 
 
-def completed(value: Value) -> 'Future[Value]':
+def completed_future(value: Value) -> 'Future[Value]':
     """Return a future that already has its value."""
     future: Future[Value] = Future()
     future.set_result(value)

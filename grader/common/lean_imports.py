@@ -39,7 +39,7 @@ class _LazyModule(ModuleType):
 
 
 @contextmanager
-def uncollected() -> Iterator[None]:
+def pause_garbage_collection() -> Iterator[None]:
     """Turn off garbage collection during imports; afterwards, it ignores what was imported."""
     gc.disable()
     try:

@@ -43,6 +43,6 @@ def log_visibly() -> None:
     logging.basicConfig(handlers=[handler])
 
 
-def tell(line: str) -> None:
+def print_at_once(line: str) -> None:
     """Print a line at once, into a pipe too: it says what the program waits for."""
     print(line, flush=True)

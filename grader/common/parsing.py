@@ -51,9 +51,9 @@ def parse(function: str, *arguments: object, limits: Limits | None = None) -> An
     return _SERVERS.ask(function, arguments, limits or Limits())
 
 
-def call_off() -> None:
+def cancel_requests() -> None:
     """End all requests that are running: their callers get a CourseError."""
-    _SERVERS.call_off()
+    _SERVERS.cancel_requests()
 
 
 class _Server:
@@ -136,7 +136,7 @@ class _Servers:
                 if not server.is_called_off:
                     self._idle.append(server)
 
-    def call_off(self) -> None:
+    def cancel_requests(self) -> None:
         for each in [*self._busy]:
             each.kill()
 

@@ -48,7 +48,7 @@ def _forked(call: Callable[..., object], arguments: list, limits: Limits) -> byt
     number = os.waitstatus_to_exitcode(status)
     if is_too_long:  # it may have exited before the signal arrived
         number = -signal.SIGKILL
-    return answer if number == 0 else _packed({'why': _why(-number, limits)})
+    return answer if number == 0 else _packed({'why': _signal_reason(-number, limits)})
 
 
 def _answer_and_exit(
@@ -85,7 +85,7 @@ def _come_to(call: Callable[..., object], arguments: list) -> bytes:
         return _packed({'why': f'{type(error).__name__}: {error}'[:500]})
 
 
-def _why(number: int, limits: Limits) -> str:
+def _signal_reason(number: int, limits: Limits) -> str:
     """Describe the signal that ended a process."""
     return {
         signal.SIGXCPU: f'it takes over {limits.cpu_sec} s of processor time',

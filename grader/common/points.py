@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 
 
-def in_hundredths(points: float) -> float:
+def round_points(points: float) -> float:
     """Return computed points rounded: 0.3, not 3 * 0.1 = 0.30000000000000004."""
     return round(points, 2)
 
 
-def added_up(points: Iterable[float]) -> float:
+def sum_points(points: Iterable[float]) -> float:
     """Return a sum, rounded: 0.7 + 0.1 + 0.1 is 0.9, not 0.8999999999999999.
 
     Manual scores with more than two decimals keep them.

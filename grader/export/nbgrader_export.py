@@ -9,7 +9,7 @@ from nbgrader.plugins import ExportPlugin
 from grader.common.db_url import gradebook_of
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
-from grader.common.points import added_up
+from grader.common.points import sum_points
 from grader.common.text import BYTE_ORDER_MARK, spreadsheet_table
 from grader.course import Course
 from grader.storage.lateness import recount_late_penalties
@@ -114,7 +114,7 @@ def _row(gradebook: Gradebook, assignment: Assignment, student: Student) -> list
         student.email,
         score,
         penalty,
-        max(0.0, added_up([score, -penalty])),
+        max(0.0, sum_points([score, -penalty])),
         assignment.max_score,
     ]
     return ['' if value is None else value for value in values]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grader.common.files import write_whole
-from grader.common.points import added_up
+from grader.common.points import sum_points
 from grader.common.text import spreadsheet_table
 from grader.course import Course
 from grader.storage.records import CellScore, records
@@ -25,7 +25,7 @@ class StudentTotal:
     @property
     def total(self) -> float:
         """Return the sum over all assignments."""
-        return added_up(score for score in self.scores if score is not None)
+        return sum_points(score for score in self.scores if score is not None)
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def as_csv(totals: Totals) -> str:
 
 def _score(cells: list[CellScore]) -> float | None:
     handed_in = [cell for cell in cells if cell.submitted]
-    return added_up(cell.score or 0.0 for cell in handed_in) if handed_in else None
+    return sum_points(cell.score or 0.0 for cell in handed_in) if handed_in else None
 
 
 def _waits(cell: CellScore) -> bool:

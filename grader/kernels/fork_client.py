@@ -12,7 +12,7 @@ import subprocess
 
 from grader.common.errors import RoomFailure
 from grader.common.file_wait import readable
-from grader.kernels.fork_servers import MAX_ANSWER, RoomForkServer, expect_fit, send
+from grader.kernels.fork_servers import MAX_ANSWER, RoomForkServer, require_forkable, send
 from grader.kernels.forked_kernel import ForkedProcess
 from grader.sandbox.kernel_paths import Keeper, KernelPaths
 from grader.sandbox.limits import OUT_OF_MEMORY_SCORE, process_limits
@@ -30,7 +30,7 @@ async def fork_into(
 
     Raises NoForkedKernel if kernels can't be forked, and RoomFailure if the room can't be built.
     """
-    expect_fit(room)
+    require_forkable(room)
     ordered = keeper_of(paths)
     keeper = subprocess.Popen(
         ordered.command,

@@ -90,7 +90,7 @@ _unfit: dict[str, str] = {}
 _lock = threading.Lock()
 
 
-def expect_fit(room: str) -> None:
+def require_forkable(room: str) -> None:
     """Raise NoForkedKernel if it is known that no kernel can be forked for this room."""
     if room in _unfit:
         raise NoForkedKernel(_unfit[room])
@@ -127,14 +127,14 @@ def close_servers() -> None:
             _servers.popitem()[1].close()
 
 
-def _let_go() -> None:
+def _close_servers_in_child() -> None:
     global _lock
     _lock = threading.Lock()  # another thread may have held it when this process was forked
     close_servers()
 
 
 # a forked process must not keep the servers alive; it may start its own
-os.register_at_fork(after_in_child=_let_go)
+os.register_at_fork(after_in_child=_close_servers_in_child)
 
 
 def _python() -> IO[bytes]:

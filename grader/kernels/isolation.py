@@ -74,18 +74,18 @@ def protections() -> tuple[Protection, ...]:
 _looking: list[threading.Thread] = []
 
 
-def look_ahead() -> None:
+def try_in_background() -> None:
     """Begin to try what a sandbox needs in a thread: it mostly waits for other programs."""
 
     def look() -> None:
-        with contextlib.suppress(Exception):  # `missing` tries again, and raises it
+        with contextlib.suppress(Exception):  # `missing_protection` tries again, and raises it
             protections()
 
     _looking.append(threading.Thread(target=look, name='isolation'))
     _looking[-1].start()
 
 
-def missing() -> str:
+def missing_protection() -> str:
     """Return what is missing and how to get it, in sentences; '' if nothing is missing."""
     while _looking:
         _looking.pop().join()
@@ -103,7 +103,7 @@ def require_isolation(*, trust_students: bool = False) -> bool:
 
     Raises CourseError if it can't, unless the caller or TRUST accepts that.
     """
-    problem = missing()
+    problem = missing_protection()
     if problem and not (trust_students or os.environ.get(TRUST) == '1'):
         raise CourseError(
             f'nothing was run: {problem}. Or, if you would give everyone in the class your own '
@@ -112,7 +112,7 @@ def require_isolation(*, trust_students: bool = False) -> bool:
     return not problem
 
 
-def accounting() -> Protection:
+def try_cgroups() -> Protection:
     """Return whether each room gets a cgroup, tried as the processes that grade would."""
     command = command_in_scope((sys.executable, '-P', '-m', 'grader.sandbox.cgroup_hierarchies'))
     tried = subprocess.run(command, capture_output=True, text=True)
@@ -122,7 +122,7 @@ def accounting() -> Protection:
     return Protection('a cgroup for each room', why, _CGROUPS)
 
 
-def slow() -> str:
+def reason_not_forked() -> str:
     """Return why kernels can't be forked on this machine, but are started; '' if they are forked.
 
     Started kernels are confined in the same way, and take longer.

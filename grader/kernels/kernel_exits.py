@@ -40,7 +40,7 @@ class Ending:
     cpu_sec: float = 0.0
     """Seconds of processor time that the kernel used."""
 
-    def whose(self, memory: MemoryEvents) -> tuple[Responsibility, str]:
+    def responsibility(self, memory: MemoryEvents) -> tuple[Responsibility, str]:
         """Return who is responsible, and the reason as text; '' for an ordinary exit."""
         if self.signal is None:
             return Responsibility.NOT_SHOWN, 'how it ended is unknown'
@@ -50,7 +50,7 @@ class Ending:
         if self.sent:
             return Responsibility.STUDENTS, f'your code sent it {name}'
         if self.signal == signal.SIGKILL and memory.killed:
-            return whose_memory(memory)
+            return responsible_for_memory(memory)
         if self.cpu_sec >= (most := PROCESS_LIMITS[resource.RLIMIT_CPU]):
             return Responsibility.STUDENTS, f'it kept a processor busy for more than {most} s'
         if name in _CRASHES:
@@ -67,7 +67,7 @@ class Ending:
         )
 
 
-def whose_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
+def responsible_for_memory(memory: MemoryEvents) -> tuple[Responsibility, str]:
     """Return who is responsible if Linux killed a process for lack of memory, and the reason."""
     if memory.limit_reached:
         return (

@@ -34,7 +34,7 @@ NAME = 'my_robot_basics_sandbox'
 """The name of the kernelspec, and of this provisioner's entry point."""
 
 
-def made_in(paths: KernelPaths) -> Path:
+def socket_folder(paths: KernelPaths) -> Path:
     """Return the folder where a room's kernel creates its sockets."""
     assert paths.made is not None  # every sandboxed room has it
     return paths.made
@@ -74,7 +74,7 @@ class SandboxProvisioner(LocalProvisioner):
         self._paths = paths
         kwargs = await super().pre_launch(**kwargs)
         for port in manager.ports:  # sockets of the earlier kernel, after a restart
-            (made_in(paths) / f'zmq-{port}').unlink(missing_ok=True)
+            (socket_folder(paths) / f'zmq-{port}').unlink(missing_ok=True)
         paths.write_connection_file(Path(manager.connection_file))
         return kwargs | {'cmd': paths.command()}
 
@@ -133,12 +133,12 @@ class SandboxProvisioner(LocalProvisioner):
         await super().post_launch(**kwargs)
         names = [f'zmq-{port}' for port in self._manager.ports]
         async with asyncio.timeout(START_TIMEOUT_SEC):
-            while not all((made_in(self._paths) / name).exists() for name in names):
+            while not all((socket_folder(self._paths) / name).exists() for name in names):
                 if await self.poll() is not None:
                     raise RoomFailure('its process ended')
                 await asyncio.sleep(0.01)
         for name in names:
-            pin = os.open(made_in(self._paths) / name, os.O_PATH | os.O_NOFOLLOW)
+            pin = os.open(socket_folder(self._paths) / name, os.O_PATH | os.O_NOFOLLOW)
             self._pins[name] = pin
             (self._paths.sockets / name).symlink_to(f'/proc/self/fd/{pin}')
 

@@ -20,7 +20,7 @@ from my_robot_basics.validate.questions import (
 from my_robot_basics.validate.together import gather_or_cancel
 
 from grader.common.errors import RoomFailure
-from grader.kernels.kernel_exits import Responsibility, whose_memory
+from grader.kernels.kernel_exits import Responsibility, responsible_for_memory
 from grader.kernels.kernels import GradingKernel
 from grader.sandbox.cgroups import MemoryEvents
 from grader.sandbox.sandbox import Sandbox
@@ -121,9 +121,9 @@ class GradingRooms:
         memory = self._sandbox.memory_events('student') if self._sandbox else MemoryEvents()
         responsibility, why = Responsibility.STUDENTS, ''
         if ending := await self._student.ending():
-            responsibility, why = ending.whose(memory)
+            responsibility, why = ending.responsibility(memory)
         elif memory.killed:
-            responsibility, why = whose_memory(memory)
+            responsibility, why = responsible_for_memory(memory)
         elif number := self._student.foreign_signal():
             responsibility = Responsibility.NOT_SHOWN
             why = f'{signal_name(number)} ended it, but no process in its room sent that signal'

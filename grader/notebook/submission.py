@@ -62,7 +62,7 @@ def read_submission(
 
     `packages` are the ROS packages that the lesson needs, folders beside the notebook.
     """
-    return with_notebook(
+    return read_notebook_of(
         unread_submission(folder, student_id=student_id, assignment=assignment, packages=packages)
     )
 
@@ -90,7 +90,7 @@ def unread_submission(
     )
 
 
-def with_notebook(unread: Submission) -> Submission:
+def read_notebook_of(unread: Submission) -> Submission:
     """Read the notebook of a submission and return the result; an error becomes its `problem`."""
     try:
         return replace(unread, notebook=read_notebook(unread.path))
@@ -165,7 +165,7 @@ def timestamps(submission: Submission) -> list[Path]:
     return [path] if path.is_file() and not path.is_symlink() else []
 
 
-def from_exchange(submission: Submission) -> list[Path]:
+def exchange_files(submission: Submission) -> list[Path]:
     """Return the files of nbgrader's exchange beside the notebook: the time, and the secret."""
     secret = submission.path.with_name(SECRET)
     fits = secret.is_file() and not secret.is_symlink()
@@ -173,7 +173,7 @@ def from_exchange(submission: Submission) -> list[Path]:
     return [*timestamps(submission), *([secret] if fits else [])]
 
 
-def handed_in(submission: Submission) -> tuple[datetime | None, list[str]]:
+def submission_time(submission: Submission) -> tuple[datetime | None, list[str]]:
     """Return when it was handed in (UTC, without a time zone), and notes on a damaged file."""
     if not (found := timestamps(submission)):
         return None, []

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from grader.common.points import added_up
+from grader.common.points import sum_points
 from grader.storage.records import CellScore
 
 
@@ -44,5 +44,5 @@ def _of_assignment(name: str, by_student: dict[str, list[CellScore]]) -> Assignm
             waiting.append(student)
         else:
             most = sum(each.max_score for each in cells)
-            final.append(FinalScore(student, added_up(scores), most))
+            final.append(FinalScore(student, sum_points(scores), most))
     return AssignmentScores(name, tuple(final), tuple(waiting))

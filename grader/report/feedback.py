@@ -12,7 +12,7 @@ from traitlets.config import Config
 from grader.common.errors import DamagedResult
 from grader.common.files import write_whole
 from grader.common.futures import run_ahead
-from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, call_off, parse
+from grader.common.parsing import AT_ONCE, Limits, ParsingFailed, cancel_requests, parse
 from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.submission import SECRET, TIMESTAMP
@@ -103,7 +103,7 @@ def _threads() -> Iterator[ThreadPoolExecutor]:
         yield threads
     except BaseException:
         threads.shutdown(wait=False, cancel_futures=True)
-        call_off()
+        cancel_requests()
         raise
     finally:
         threads.shutdown()

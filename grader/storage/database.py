@@ -15,7 +15,7 @@ from sqlalchemy import create_engine
 
 from grader.common.db_url import is_in_postgresql
 from grader.common.errors import GradebookError
-from grader.common.logs import tell
+from grader.common.logs import print_at_once
 from grader.course import Course
 from grader.storage import failures, postgresql
 from grader.storage.failures import BUSY
@@ -96,7 +96,7 @@ def _make_tables(db_url: str) -> None:
     Gradebook(db_url).close()  # adds nbgrader's row of the course
 
 
-def wait_until_free(course: Course, say: Callable[[str], None] = tell) -> None:
+def wait_until_free(course: Course, say: Callable[[str], None] = print_at_once) -> None:
     """Wait while another program locks the database, and say so. Raises after TIMEOUT_SEC.
 
     PostgreSQL serves several programs at a time: wait until its server answers.

@@ -8,7 +8,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from grader.common.errors import CourseError
-from grader.common.points import in_hundredths
+from grader.common.points import round_points
 from grader.common.text import printable
 from grader.course import Course
 from grader.storage.resubmissions import ResubmissionRules, read_rules
@@ -43,7 +43,7 @@ class Deadlines:
         if not self.per_day or seconds_late <= 60 * self.grace_minutes:
             return None
         share = min(self.at_most, self.per_day * math.ceil(seconds_late / DAY_SEC))
-        return in_hundredths(score * share)
+        return round_points(score * share)
 
 
 def deadlines(gradebook: Path, assignments: Collection[str] | None = None) -> Deadlines | None:

@@ -18,7 +18,7 @@ from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY
-from grader.notebook.submission import Submission, from_exchange, handed_in, read_submission
+from grader.notebook.submission import Submission, exchange_files, read_submission, submission_time
 from grader.storage.database import (
     make_database,
     open_database,
@@ -126,7 +126,7 @@ def _store_all(course: Course, submission: Submission, graded: NotebookNode) -> 
     """Store what is in the journal; doing it again is the same as doing it once."""
     student, assignment = submission.student_id, submission.assignment
     at = resources_of(course, assignment, student)
-    at['nbgrader']['timestamp'], notes = handed_in(submission)
+    at['nbgrader']['timestamp'], notes = submission_time(submission)
     graded = nbformat.from_dict(graded)
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).notes += notes
     folder = course.folder('autograded', student, assignment)
@@ -142,7 +142,7 @@ def _keep_files(course: Course, submission: Submission) -> None:
     Raises OSError if that can't be done: then nothing is stored.
     """
     folder = course.folder('autograded', submission.student_id, submission.assignment)
-    beside = (*submission.extra_files, *from_exchange(submission))
+    beside = (*submission.extra_files, *exchange_files(submission))
     files = {each.name: each.read_bytes() for each in beside}
     files |= {
         name: package_files.read_plain_file(f) for name, f in submission.package_files.items()

@@ -13,7 +13,7 @@ from nbgrader.api import (
 )
 from sqlalchemy import Select, bindparam, exists, select
 
-from grader.common.points import added_up
+from grader.common.points import sum_points
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def held_score(book: Gradebook, student_id: str, assignment: str) -> HeldScore |
     if found is None:
         return None
     late = found.late or 0.0
-    return HeldScore(added_up((found.score, -late)), found.max_score, late, bool(found.pending))
+    return HeldScore(sum_points((found.score, -late)), found.max_score, late, bool(found.pending))
 
 
 def auto_scores(book: Gradebook, student_id: str, assignment: str) -> dict[str, float | None]:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from grader.common.logs import tell
+from grader.common.logs import print_at_once
 
 
 @contextmanager
-def gradebook_lock(gradebook: Path, say: Callable[[str], None] = tell) -> Iterator[None]:
+def gradebook_lock(gradebook: Path, say: Callable[[str], None] = print_at_once) -> Iterator[None]:
     """Hold the lock of a gradebook for the block; wait for it first, and say so.
 
     The process that holds it may take it again. It is released when the outermost block or the

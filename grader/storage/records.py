@@ -22,7 +22,7 @@ from sqlalchemy.orm import selectinload
 
 from grader.common.errors import DamagedResult
 from grader.course import Course
-from grader.notebook.own_files import parsed
+from grader.notebook.own_notebooks import parse_own_notebook
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import open_database
 from grader.storage.gradebook import needs_manual_grade, open_gradebook
@@ -111,7 +111,7 @@ def graded_notebook(course: Course, student_id: str, assignment: str) -> Noteboo
     if not path.exists():
         return nbformat.v4.new_notebook()
     try:
-        return parsed(path.read_text('utf-8'))
+        return parse_own_notebook(path.read_text('utf-8'))
     except ValueError:
         again = f'run ./course grade --student {student_id}, which grades it again'
         raise DamagedResult(f'the graded notebook {path} is damaged: {again}') from None

@@ -10,7 +10,7 @@ from nbformat import NotebookNode
 
 from grader.common.versions import machinery
 from grader.course import Course
-from grader.notebook.own_files import parsed
+from grader.notebook.own_notebooks import parse_own_notebook
 from grader.notebook.restore import KEY, grade_id, role
 from grader.notebook.submission import TIMESTAMP, Submission
 from grader.storage.database import open_database
@@ -53,7 +53,7 @@ def find_earlier_result(course: Course, submission: Submission, key: str) -> Not
     folder = course.folder('autograded', submission.student_id, submission.assignment)
     try:
         text = (folder / f'{submission.assignment}.ipynb').read_text(encoding='utf-8')
-        notebook = parsed(text) if key in text else None
+        notebook = parse_own_notebook(text) if key in text else None
     except (OSError, ValueError):
         return None  # not there yet, or damaged: it is graded again
     if notebook is None or notebook.metadata.get(KEY, {}).get(_UNDER) != key:

@@ -53,7 +53,7 @@ def submit_for_grading(
         return nothing
     return backend.submit(
         GradingTask(
-            notebook=_restored(submission, template),
+            notebook=_restore(submission, template),
             files={name: path.read_bytes() for name, path in submission.files.items()},
             seed=seed,
             trust_students=trust_students,
@@ -61,7 +61,7 @@ def submit_for_grading(
     )
 
 
-def _restored(submission: Submission, template: AssignmentTemplate) -> NotebookNode:
+def _restore(submission: Submission, template: AssignmentTemplate) -> NotebookNode:
     assert submission.notebook is not None  # a submission without one has a problem
     notebook = restore(submission.notebook, template).notebook
     notebook.metadata[KEY].notes += submission.notes

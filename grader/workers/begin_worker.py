@@ -6,14 +6,14 @@
 import gc
 import sys
 
-from grader.common.lean_imports import leave_out_formats, uncollected
+from grader.common.lean_imports import leave_out_formats, pause_garbage_collection
 from grader.kernels.fork_servers import start_servers
 
 
 def main(handle: str) -> None:
     """Serve the socket with that file descriptor."""
     start_servers()
-    with uncollected():
+    with pause_garbage_collection():
         leave_out_formats()
         from grader.workers import worker
 

@@ -10,7 +10,7 @@ from typing import Any, Self
 from grader.common.errors import ClusterError, TaskFailed
 from grader.common.versions import machinery, versions
 from grader.judging.task import GradingTask, Result, pack, unpack
-from grader.workers.dask_client import CONNECT_TIMEOUT_SEC, Certificates, check_address, connected
+from grader.workers.dask_client import CONNECT_TIMEOUT_SEC, Certificates, check_address, connect
 
 _START = 'Start workers from the same checkout, set up by ./course: .venv/bin/dask worker ADDRESS'
 LOOK_SEC = 5.0
@@ -31,13 +31,14 @@ class Cluster:
 
     def __enter__(self) -> Self:
         """Connect, and check each worker: raises ClusterError if one would not grade as we do."""
-        self._client = connected(self._address, self._certificates)
+        self._client = connect(self._address, self._certificates)
         try:
-            self.capacity = self._look_at_workers()
+            self.capacity = self._check_workers()
         except BaseException:
             self._client.close()
             raise
-        self._watch = threading.Thread(target=self._look_after, name='cluster', daemon=True)
+        watch = self._warn_without_workers
+        self._watch = threading.Thread(target=watch, name='cluster', daemon=True)
         self._watch.start()
         return self
 
@@ -67,10 +68,10 @@ class Cluster:
         work: Future[Result] = Future()
         asked = self._client.submit(dask_worker.grade, pack(task), machinery(), pure=False)
         self._asked[asked] = work
-        asked.add_done_callback(lambda done: self._settle(done, task))
+        asked.add_done_callback(lambda done: self._set_result(done, task))
         return work
 
-    def _settle(self, asked: Any, task: GradingTask) -> None:
+    def _set_result(self, asked: Any, task: GradingTask) -> None:
         """Set the result of a task; Dask calls this in a thread of its own."""
         work = self._asked.pop(asked)
         try:
@@ -80,7 +81,7 @@ class Cluster:
                     'once the scheduler runs again, run the same command again, and it goes on.'
                 )
             answer = asked.result()
-            if refused := _refused(answer):
+            if refused := _refusal_in(answer):
                 raise ClusterError(f'a worker of {self._address} {_difference(refused)}')
             work.set_result(unpack(answer, task))
         except ClusterError as error:
@@ -92,7 +93,7 @@ class Cluster:
                 else TaskFailed(f'{type(error).__name__}: {error}')
             )
 
-    def _look_at_workers(self) -> int:
+    def _check_workers(self) -> int:
         """Return how many submissions all workers take. Raises ClusterError for a bad worker."""
         from grader.workers import dask_worker
 
@@ -115,7 +116,7 @@ class Cluster:
             raise ClusterError(f'{self._address} has no workers. {_START}')
         return capacity
 
-    def _look_after(self) -> None:
+    def _warn_without_workers(self) -> None:
         """Warn if there is no worker; tasks then wait for one."""
         warned = False
         while not self._left.wait(LOOK_SEC):
@@ -128,7 +129,7 @@ class Cluster:
             warned = not workers
 
 
-def _refused(answer: str) -> dict | None:
+def _refusal_in(answer: str) -> dict | None:
     try:
         found = json.loads(answer)
     except ValueError:

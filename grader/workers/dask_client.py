@@ -47,7 +47,7 @@ def _is_loopback(host: str) -> bool:
         return host == 'localhost'
 
 
-def connected(address: str, certificates: Certificates) -> 'Client':
+def connect(address: str, certificates: Certificates) -> 'Client':
     """Return a client of a scheduler. Raises ClusterError if there is none, or no Dask."""
     try:
         from distributed import Client, Security

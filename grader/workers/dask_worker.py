@@ -10,17 +10,17 @@ from distributed import Worker, get_worker
 
 from grader.common.errors import TaskFailed
 from grader.common.versions import machinery, versions
-from grader.kernels.isolation import missing
+from grader.kernels.isolation import missing_protection
 from grader.sandbox.limits import IN_FLIGHT_EACH
 from grader.workers.workers import Workers
 
 _once = threading.Lock()
-"""Several threads of a worker may call `_described` at the same time."""
+"""Several threads of a worker may call `_description` at the same time."""
 
 
 async def describe(dask_worker: Worker) -> str:
     """Return a worker's versions, what its sandbox lacks, and its capacity, as JSON."""
-    return await asyncio.to_thread(_described, dask_worker.state.nthreads)
+    return await asyncio.to_thread(_description, dask_worker.state.nthreads)
 
 
 def grade(text: str, wanted: str) -> str:
@@ -29,7 +29,7 @@ def grade(text: str, wanted: str) -> str:
     If this worker's `machinery` is not `wanted`, or it has no sandbox, return why it refuses.
     """
     in_flight = get_worker().state.nthreads
-    about = json.loads(_described(in_flight))
+    about = json.loads(_description(in_flight))
     if about['machinery'] != wanted or about['missing']:
         return json.dumps({'refused': about})
     try:
@@ -48,13 +48,13 @@ def _workers(in_flight: int) -> Workers:
     return Workers(number, in_flight=in_flight).__enter__()
 
 
-def _described(in_flight: int) -> str:
+def _description(in_flight: int) -> str:
     with _once:
         return json.dumps(
             {
                 'machinery': machinery(),
                 'versions': versions(),
-                'missing': missing(),
+                'missing': missing_protection(),
                 'capacity': _workers(in_flight).capacity,
             }
         )

@@ -12,7 +12,7 @@ import struct
 
 from grader.common.logs import log_visibly
 from grader.judging.task import run_packed
-from grader.kernels.isolation import look_ahead
+from grader.kernels.isolation import try_in_background
 from grader.sandbox.limits import MAX_TASK_BYTES
 
 BEAT_SEC = 5.0
@@ -83,5 +83,5 @@ def main(handle: str) -> None:
 
 def prepare() -> None:
     """Prepare what the first task needs, most of it in other processes or threads."""
-    look_ahead()
+    try_in_background()
     importlib.import_module('grader.judging.execute')

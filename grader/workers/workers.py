@@ -73,7 +73,7 @@ class Workers:
 
     async def _start(self) -> None:
         if not self._processes:
-            self._next()
+            self._idlest_worker()
 
     def require_isolation(self, *, trust_students: bool = False) -> bool:
         """Return whether student code runs in a sandbox. Raises CourseError if it has to."""
@@ -81,21 +81,21 @@ class Workers:
 
     def submit(self, task: GradingTask) -> 'Future[Result]':
         """Grade a task when there is room. The future raises TaskFailed if there is no result."""
-        return self._pool.submit(self._graded, task)
+        return self._pool.submit(self._grade, task)
 
     def submit_text(self, text: str) -> 'Future[str]':
         """Grade a packed task; the future has the packed result."""
-        return self._pool.submit(self._tried, text)
+        return self._pool.submit(self._grade_text, text)
 
-    async def _graded(self, task: GradingTask) -> Result:
-        return unpack(await self._tried(pack(task)), task)
+    async def _grade(self, task: GradingTask) -> Result:
+        return unpack(await self._grade_text(pack(task)), task)
 
-    async def _tried(self, text: str) -> str:
+    async def _grade_text(self, text: str) -> str:
         async with self._gate:
-            return await self._answer(text)
+            return await self._grade_with_retries(text)
 
-    async def _answer(self, text: str) -> str:
-        answer = await self._next().grade(text)
+    async def _grade_with_retries(self, text: str) -> str:
+        answer = await self._idlest_worker().grade(text)
         for _ in range(TRIES - 1):
             if answer is None:  # in a new process alone, where no other submission can end it
                 alone = WorkerProcess(self._command)
@@ -107,7 +107,7 @@ class Workers:
             raise TaskFailed(f'the process that graded it ended before it was done, {TRIES} times')
         return answer
 
-    def _next(self) -> 'WorkerProcess':
+    def _idlest_worker(self) -> 'WorkerProcess':
         """Return the worker with the fewest tasks, or a new one if all have enough.
 
         A worker takes some seconds to start: for two submissions that is not worthwhile.

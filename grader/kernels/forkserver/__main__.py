@@ -32,7 +32,7 @@ def main(control: socket.socket, room: str) -> None:
         before = dict(os.environ)
         imports.import_for(room)
         made = {name: text for name, text in os.environ.items() if before.get(name) != text}
-        single_thread.become_alone()
+        single_thread.become_single_threaded()
     except Exception as error:
         control.send(f'{type(error).__name__}: {error}'[:2000].encode())
         os._exit(1)  # a normal exit would wait for threads, and a thread may be the problem

@@ -27,7 +27,7 @@ def listen(program: bytes) -> int:
     return _libc.syscall(_SECCOMP, _SET_MODE_FILTER, _NEW_LISTENER, header)
 
 
-def put_own_memory(start: int, end: int) -> None:
+def replace_by_private_memory(start: int, end: int) -> None:
     """Map empty read-only memory over an address range of this process. Raises OSError."""
     place = _libc.mmap(
         ctypes.c_void_p(start), ctypes.c_size_t(end - start), mmap.PROT_READ,

@@ -13,7 +13,7 @@ import libc
 _ASLEEP_SEC = 10.0
 
 
-def become_alone() -> None:
+def become_single_threaded() -> None:
     """Drop the threads and shared memory that imports made. Raises RuntimeError if others remain.
 
     It returns in a child of the process that called it.
@@ -54,7 +54,7 @@ def _asleep(task: str) -> bool:
 def _unshare_memory() -> None:
     """Replace memory that an import shares with the machine by private memory."""
     for start, end in [(s, e) for s, e, _, path in _shared() if path.startswith('/dev/shm/')]:
-        libc.put_own_memory(start, end)
+        libc.replace_by_private_memory(start, end)
 
 
 def _shared() -> Iterator[tuple[int, int, str, str]]:

@@ -5,7 +5,7 @@ import nbformat.reader
 from nbformat import NotebookNode
 
 
-def parsed(text: str) -> NotebookNode:
+def parse_own_notebook(text: str) -> NotebookNode:
     """Return a notebook from its file's text. Raises ValueError if it is not one.
 
     nbformat.read would validate all of it each time, and only log what is wrong.
