@@ -11,7 +11,7 @@ import pytest
 from course_maker import TOY, answered, with_own_database
 from serving_desk import RIGHT, arrivals, put_there, serve_here
 
-from grader.serving import gone as gone_module
+from grader.serving import removed_entries
 from grader.serving.queue import GRADED, REFUSED, REPLACED, Arrival
 from grader.serving.queue_file import FILE, open_queue, open_queue_to_read
 from grader.serving.removed_entries import RemovedEntries
@@ -62,12 +62,12 @@ def refused_here(course, inbound):
 
 def test_a_partly_graded_entry_is_still_known_after_it_vanishes(inbound, refused_here, course):
     """A network file system may show an empty folder for a moment."""
-    gone, refused = refused_here
+    removed, refused = refused_here
     refused('all.zip', 'zoe')
     refused('nothing.zip')
     for each in inbound.iterdir():
         each.unlink()
-    assert gone.forget()
+    assert removed.forget()
     assert [each.entry for each in arrivals(course)] == ['all.zip']
     with open_queue(course.gradebook, inbound) as queue:
         assert queue.seen() == {'all.zip': '1'}
@@ -77,15 +77,15 @@ def test_an_entry_that_vanishes_in_the_same_second_as_another_is_noticed(
     inbound, refused_here, monkeypatch
 ):
     """Some file systems count the time of a change in seconds."""
-    monkeypatch.setattr(gone_module, 'SETTLED_NS', 10**15)  # however long this test takes
-    gone, refused = refused_here
+    monkeypatch.setattr(removed_entries, 'SETTLED_NS', 10**15)  # however long this test takes
+    removed, refused = refused_here
     refused('one.zip')
     refused('other.zip')
     now = time.time_ns()
     for name in 'one.zip', 'other.zip':
         (inbound / name).unlink()
         os.utime(inbound, ns=(now, now))
-        assert gone.forget()
+        assert removed.forget()
 
 
 def test_deleting_an_inbound_file_keeps_its_grade(course, inbound, at_once):
