@@ -194,11 +194,7 @@ def kill_at(monkeypatch, step, when):
         ('replace', 'before', 0),  # nothing has begun
         ('replace', 'after', 1),
         ('store_scores', 'before', 1),
-        (
-            'store_scores',
-            'after',
-            1,
-        ),  # the scores are in the database, and the notebook is not there
+        ('store_scores', 'after', 1),  # the scores are stored, and the notebook is not there
         ('unlink', 'before', 1),
         ('unlink', 'after', 0),  # all is stored
     ],
