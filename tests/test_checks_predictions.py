@@ -82,7 +82,7 @@ def test_the_grader_learns_whether_a_visible_prediction_was_wrong(monkeypatch, a
     monkeypatch.setattr(stage_watchers, 'is_in_test_room', lambda: False)
     predicted = predictions(monkeypatch, arrives=arrives_too, is_lost=True)
     predicted.run(arrives)
-    hidden.begin()
+    hidden.begin_hidden_part()
     predicted.run(is_lost)
     with pytest.raises(CheckFailed):
         predicted.conclude(points={2: 2})

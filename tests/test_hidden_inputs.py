@@ -7,7 +7,7 @@ import pytest
 from course_maker import TOY, answered, make_course, submit, toy_lesson, write_source
 from my_robot_basics.checks import CheckFailed, expect, fail
 from my_robot_basics.feedback import hidden
-from my_robot_basics.feedback.hidden_source import marked, visible
+from my_robot_basics.feedback.hidden_source import mark_hidden_part, without_hidden_part
 from my_robot_basics.validate.cells import role
 
 from grader.__main__ import main
@@ -189,7 +189,7 @@ def test_a_name_by_a_student_cannot_end_its_own_quotation(told):
     [('ValueError: 3 is 4', 'ValueError: …'), ('E123: 4', '…'), ('print: 4', '…'), ('a', '…')],
 )
 def test_only_names_of_builtin_exceptions_are_shown_to_the_student(told, said, kept):
-    assert hidden.without_inputs(hidden.raised(said)) == kept
+    assert hidden.without_inputs(hidden.student_exception(said)) == kept
 
 
 @pytest.mark.parametrize(
@@ -215,14 +215,14 @@ def test_a_hidden_part_is_marked_in_its_first_line_at_any_place():
     source = (
         'for i in [1]:\n    ### BEGIN HIDDEN TESTS\n    told = 1\n    ### END HIDDEN TESTS\nx = 1'
     )
-    lines = marked(source).split('\n')
-    assert lines[0].endswith('.start(quiet=False)')
-    titled = marked(f'"""A title\n\nand more"""\n{source}', quiet=True).split('\n')
-    assert titled[3].endswith('.start(quiet=True)')
+    lines = mark_hidden_part(source).split('\n')
+    assert lines[0].endswith('.start_cell(quiet=False)')
+    titled = mark_hidden_part(f'"""A title\n\nand more"""\n{source}', quiet=True).split('\n')
+    assert titled[3].endswith('.start_cell(quiet=True)')
     assert titled[4:6] == lines[1:3]
     assert lines[2].startswith("    __import__('my_robot_basics.feedback.hidden'")
     assert lines[3:] == source.split('\n')[2:]
-    assert visible(source) == 'for i in [1]:\nx = 1'
+    assert without_hidden_part(source) == 'for i in [1]:\nx = 1'
 
 
 @pytest.mark.parametrize('assignment', Course().assignments())
@@ -231,5 +231,5 @@ def test_marked_checks_compile_and_their_visible_parts_are_those_of_the_release(
     given = {cell.id: cell.source for cell in course.release(assignment).cells}
     for cell in course.source(assignment).cells:
         if cell.cell_type == 'code' and role(cell) == 'grade':
-            compile(marked(cell.source), cell.id, 'exec')
-            assert visible(cell.source) == given[cell.id]
+            compile(mark_hidden_part(cell.source), cell.id, 'exec')
+            assert without_hidden_part(cell.source) == given[cell.id]

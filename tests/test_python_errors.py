@@ -12,7 +12,7 @@ import pytest
 import rclpy
 from my_robot_basics.feedback import rclpy_names
 from my_robot_basics.feedback.error_words import DECIMAL_COMMA
-from my_robot_basics.feedback.python_errors import explained, what_to_do
+from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import raised
 from my_robot_basics.live.bare_errors import made_with
 from my_robot_basics.validate.outputs import CellRun
@@ -171,7 +171,7 @@ def error_of(code, **names):
 )
 def test_an_unclear_error_of_python_is_explained_with_what_to_do(code, why):
     error = error_of(code, **NAMES)
-    said = what_to_do(f'{type(error).__name__}: {error}')
+    said = hint_for_exception(f'{type(error).__name__}: {error}')
     assert said.startswith(why) if why else said == ''
 
 
@@ -183,25 +183,25 @@ def test_the_error_of_a_second_rclpy_init_is_explained():
         error = error_of('rclpy.init(context=context)', rclpy=rclpy, context=context)
     finally:
         context.shutdown()
-    said = what_to_do(f'{type(error).__name__}: {error}')
+    said = hint_for_exception(f'{type(error).__name__}: {error}')
     assert said == ', so leave out rclpy.init(): it has been called already'
 
 
 def test_the_missing_result_of_a_future_is_recognised_by_the_students_line():
     said = "AttributeError: 'NoneType' object has no attribute 'reachable' (line 15, in receive: "
-    assert 'add_done_callback' in what_to_do(f'{said}if future.result().reachable:)')
-    assert what_to_do(f'{said}if answer.reachable:)') == ''
+    assert 'add_done_callback' in hint_for_exception(f'{said}if future.result().reachable:)')
+    assert hint_for_exception(f'{said}if answer.reachable:)') == ''
 
 
 def test_a_loop_over_the_keys_of_a_dict_is_recognised_by_the_students_line():
     said = 'ValueError: too many values to unpack (expected 2) (line 12, in solve: for a, b in '
-    assert what_to_do(f'{said}solutions:)') == ', so go through .items() of a dict'
-    assert what_to_do(f'{said}solutions.items():)') == ''
+    assert hint_for_exception(f'{said}solutions:)') == ', so go through .items() of a dict'
+    assert hint_for_exception(f'{said}solutions.items():)') == ''
 
 
 def test_an_exhausted_iterator_in_a_coroutine_is_explained():
     said = 'RuntimeError: coroutine raised StopIteration'
-    assert what_to_do(said) == ', so start again when next(…) finds no more'
+    assert hint_for_exception(said) == ', so start again when next(…) finds no more'
 
 
 LETTERS = ', so write a name of letters from a to z, digits'
@@ -246,14 +246,14 @@ def test_a_name_that_ros_refuses_is_explained_with_what_to_write(run, case):
     told = describe_cell_error('a', CellRun(error=new_output('error', ename=ename, evalue=evalue)))
     assert why in told
     assert '^' not in told
-    assert why in explained(f'its callback raised {ename}: {evalue} (line 4, in f: g(x))')
+    assert why in with_hint(f'its callback raised {ename}: {evalue} (line 4, in f: g(x))')
 
 
 def test_the_full_stop_of_an_error_is_dropped_before_an_explanation():
     where = 'at index 0 in parameters list'
     said = f'TypeError: Third element 0 {where} is not a ParameterDescriptor'
-    assert explained(f'{said}.') == said + DECIMAL_COMMA
-    assert explained('TypeError: not so.') == 'TypeError: not so.'
+    assert with_hint(f'{said}.') == said + DECIMAL_COMMA
+    assert with_hint('TypeError: not so.') == 'TypeError: not so.'
 
 
 def test_the_note_on_a_stopped_cell_says_what_to_do():
@@ -272,9 +272,9 @@ def test_errors_of_rclpy_about_a_decimal_comma_are_explained(run):
     node = run(Talker, 'talker')
     for code in 'node.create_timer(0,2, node.tick)', "node.declare_parameter('hz', 5,0)":
         error = error_of(code, node=node)
-        assert what_to_do(f'{type(error).__name__}: {error}') == DECIMAL_COMMA
+        assert hint_for_exception(f'{type(error).__name__}: {error}') == DECIMAL_COMMA
     error = error_of('node.create_timer(0.2, node.tick, 10)', node=node)
-    assert what_to_do(f'{type(error).__name__}: {error}').endswith(', and no queue depth')
+    assert hint_for_exception(f'{type(error).__name__}: {error}').endswith(', and no queue depth')
 
 
 ANOTHER_NAME = (
@@ -287,13 +287,13 @@ PROPERTIES = sorted(name for name, kept in vars(Node).items() if isinstance(kept
 @pytest.mark.parametrize('name', PROPERTIES)
 def test_an_assignment_to_a_property_of_node_is_explained(run, name):
     error = error_of(f'node.{name} = []', node=run(Node, 'keeper'))
-    assert what_to_do(f'{type(error).__name__}: {error}') == ANOTHER_NAME
+    assert hint_for_exception(f'{type(error).__name__}: {error}') == ANOTHER_NAME
 
 
 def test_an_assignment_to_a_property_of_another_class_is_not_explained():
     own = type('Own', (), {'rate': property(lambda self: 5.0)})
     error = error_of('own.rate = 2.0', own=own())
-    assert what_to_do(f'{type(error).__name__}: {error}') == ''
+    assert hint_for_exception(f'{type(error).__name__}: {error}') == ''
 
 
 def test_the_pattern_of_nodes_own_methods_matches_15_methods_of_node():
@@ -308,7 +308,7 @@ def test_a_method_hidden_by_the_property_handle_of_node_is_explained(run):
     """In a class listed after Node among the bases, `self.handle` is rclpy's and not callable."""
     error = error_of('node.handle()', node=run(Node, 'keeper'))
     said = f'{type(error).__name__}: {error}'
-    assert what_to_do(said).startswith(', so give your method another name than `handle`')
+    assert hint_for_exception(said).startswith(', so give your method another name than `handle`')
 
 
 @pytest.mark.starts
@@ -316,11 +316,15 @@ def test_a_wrong_interface_type_is_explained_with_the_type_that_is_needed(run):
     node = run(Node, 'asker')
     for code in 'create_client(SolveIK.Request, "/a")', 'create_client(JointState, "/a")':
         error = error_of(f'node.{code}', node=node, **NAMES)
-        assert what_to_do(f'{error}').startswith(', so give the type of a service, such as Solve')
+        assert hint_for_exception(f'{error}').startswith(
+            ', so give the type of a service, such as Solve'
+        )
     error = error_of('node.create_publisher(SolveIK, "/a", 10)', node=node, **NAMES)
-    assert what_to_do(f'{error}') == ', so give the type of a message, such as JointState'
+    assert hint_for_exception(f'{error}') == ', so give the type of a message, such as JointState'
     error = error_of('node.create_subscription(JointState, "/a", None, 10)', node=node, **NAMES)
-    assert what_to_do(f'{error}').startswith(', so give it a function that takes one message')
+    assert hint_for_exception(f'{error}').startswith(
+        ', so give it a function that takes one message'
+    )
 
 
 @pytest.mark.starts

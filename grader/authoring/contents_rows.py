@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable
 from functools import reduce
 
-from my_robot_basics.feedback.hidden_source import visible
+from my_robot_basics.feedback.hidden_source import without_hidden_part
 from my_robot_basics.validate.cells import graded_id, role, title_of
 from my_robot_basics.validate.exercises import find_exercises
 from my_robot_basics.validate.titles import checks_something
@@ -46,7 +46,7 @@ def progress_row(name: str, lesson: NotebookNode) -> dict:
     for exercise in find_exercises(lesson):
         checks = [lesson.cells[i].source for i in exercise.grades]
         if checks:
-            can_run = any(checks_something(visible(check)) for check in checks)
+            can_run = any(checks_something(without_hidden_part(check)) for check in checks)
             kinds[exercise.name] = 'here' if can_run else 'at grading'
     # a list, because nbformat sorts the keys of objects that it writes
     exercises = [{'name': each, 'checked': kind} for each, kind in kinds.items()]

@@ -1,6 +1,6 @@
 """Record in a released notebook what *Validate* needs and its cells no longer show."""
 
-from my_robot_basics.feedback.hidden_source import visible
+from my_robot_basics.feedback.hidden_source import without_hidden_part
 from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, grade_id, roles
 from my_robot_basics.validate.titles import checks_something
 from nbconvert.preprocessors import Preprocessor
@@ -18,7 +18,7 @@ class MarkHidden(Preprocessor):
         for cell, role in zip(nb.cells, roles(nb), strict=True):
             if role != 'text':
                 record[_key(cell)] = {'role': role}
-            if role == 'grade' and (shown := visible(cell.source)) != cell.source:
+            if role == 'grade' and (shown := without_hidden_part(cell.source)) != cell.source:
                 record[_key(cell)]['hidden'] = 'part' if checks_something(shown) else 'all'
         nb.metadata[KEY] = {RECORD: record}
         return nb, resources

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from my_robot_basics.feedback.hidden_source import visible
+from my_robot_basics.feedback.hidden_source import without_hidden_part
 from my_robot_basics.language.picture_words import PICTURES
 from my_robot_basics.language.sentences import JOINED
 from my_robot_basics.validate.cells import role
@@ -167,7 +167,7 @@ def _checks_of_lessons(course: Course) -> tuple[Texts, Texts]:
     for name in course.assignments():
         for cell in course.source(name).cells:
             if role(cell) == 'grade' and cell.cell_type == 'code':
-                shown = messages_in(visible(cell.source), title=True)
+                shown = messages_in(without_hidden_part(cell.source), title=True)
                 for text in messages_in(cell.source, title=True):
                     _add(seen if text in shown else hidden, [text], f'{name}: {cell.id}')
     return seen, hidden

@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 from my_robot_basics.checks.definition_differences import differences, wrong_names
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import CheckFailed, fail, shorten
-from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_already
+from my_robot_basics.feedback.hidden import is_quiet, leave_quiet_mode, tell_failed_already
 from my_robot_basics.ros2.definitions import Definition, read_definition
 
 TO_SHOW: tuple[str, ...] = ('in `{name}`, {faults}',)
@@ -87,7 +87,7 @@ class Definitions:
         if earned:
             seen = f'something else in {shown}, which leaves {earned:g} of {most:g} points'
         # the message quotes only the task's table and the student's text, no hidden input
-        with said_in_full():
+        with leave_quiet_mode():
             fail(
                 expected='each text to define what its table says',
                 seen=seen,

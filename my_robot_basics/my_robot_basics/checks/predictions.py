@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from my_robot_basics.checks.delivery_experiment import Stage, watchers
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail, shorten
-from my_robot_basics.feedback.hidden import is_quiet, said_in_full, tell_failed_already
+from my_robot_basics.feedback.hidden import is_quiet, leave_quiet_mode, tell_failed_already
 
 Situation = Callable[[Stage], bool]
 """A function with a prediction's name that runs on an empty stage; returns if the message arrived.
@@ -77,7 +77,7 @@ class Predictions:
             for each, arrived in self._wrong
         ]
         # safe to show: what happens on the check's own stage, and the student's own answers
-        with said_in_full():
+        with leave_quiet_mode():
             fail(
                 expected='each prediction to match what happens when the check runs it',
                 seen=self._how_many_wrong(earned, max(points.values())),

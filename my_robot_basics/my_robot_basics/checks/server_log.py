@@ -8,7 +8,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import shorten
-from my_robot_basics.feedback.python_errors import what_to_do
+from my_robot_basics.feedback.python_errors import hint_for_exception
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.watcher import Watcher
 
@@ -45,7 +45,7 @@ class ServerLog:
         said = said.removeprefix(_RAISED)
         why = hidden.theirs(shorten(said, 100))
         raised = f'the execute callback raised an exception ({why})'
-        raised += what_to_do(said)
+        raised += hint_for_exception(said)
         # rclpy catches what this callback raises: its spin goes on, as it does for no other
         return f'{raised}; fix that first: the callback ended there'
 

@@ -19,7 +19,7 @@ from my_robot_basics.exchange.expected_types import (
 )
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import fail, shorten
-from my_robot_basics.feedback.python_errors import what_to_do
+from my_robot_basics.feedback.python_errors import hint_for_exception
 from my_robot_basics.session import interactions
 
 __all__ = ['call', 'value']
@@ -41,8 +41,8 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
         _fail_missing(name, what='function')
     if kind == 'raised':
         raised = shorten(': '.join(filter(None, (body['type'], body['message']))))
-        hint, why = f'call {shown} in a cell of your own to see where', what_to_do(raised)
-        said = hidden.raised(raised)
+        hint, why = f'call {shown} in a cell of your own to see where', hint_for_exception(raised)
+        said = hidden.student_exception(raised)
         cause, seen = f'`{name}` raises {said}', raised
         if why:
             cause, seen = f'`{name}` raises `{said}`{why}', f'it raised `{raised}`{why}'

@@ -79,13 +79,13 @@ def fail(
     Failure = PartlyRight if earned else doubt
     if earned:
         hidden.tell_points(earned)
-    sentence = hidden.in_full(f'expected {expected}, saw {seen}: {hint}')
+    sentence = hidden.without_marks(f'expected {expected}, saw {seen}: {hint}')
     if hidden.is_quiet():
         hidden.tell_grader(sentence)
         why = hidden.without_inputs(f'{cause}: {hint}' if cause else hint)
         sentence = f'{hidden.PLACE}{why}'
     else:
-        hidden.tell_hint(hidden.in_full(hint))
+        hidden.tell_hint(hidden.without_marks(hint))
         if picture is not None:
             show(picture, alt=f'Picture of what was seen: {seen}')
     failure = Failure(sentence)

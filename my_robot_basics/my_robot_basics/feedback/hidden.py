@@ -1,9 +1,9 @@
 """The hidden part of a check, which is not released: students read only the cause of its failure.
 
-The grader runs a grade cell as `marked` of `hidden_source` writes it. In the hidden part, `fail`
-names neither inputs nor expected values, and no output of the student's code: so nobody can
-collect the right answers from feedback into a lookup table. The whole sentence goes to the
-instructor.
+The grader runs a grade cell as `mark_hidden_part` of `hidden_source` writes it. In the hidden
+part, `fail` names neither inputs nor expected values, and no output of the student's code: so
+nobody can collect the right answers from feedback into a lookup table. The whole sentence goes to
+the instructor.
 """
 
 import builtins
@@ -46,12 +46,12 @@ def is_in_test_room() -> bool:
     return os.environ.get('MY_ROBOT_BASICS_ROOM') == 'test'
 
 
-def is_advice() -> bool:
+def is_validating() -> bool:
     """Whether *Validate* runs this check, so that its result costs no points."""
     return os.environ.get('MY_ROBOT_BASICS_ADVICE') == '1'
 
 
-def start(*, quiet: bool) -> None:
+def start_cell(*, quiet: bool) -> None:
     """Begin a grade cell; with `quiet`, it is treated as hidden from its first line."""
     global _quiet, _start_sec
     _quiet = quiet
@@ -64,10 +64,10 @@ def checked_for_sec() -> float:
     An endpoint that was not created in this time is not waited for again. The grader does not
     rely on this: a callback may still create the endpoint later.
     """
-    return time.monotonic() - _start_sec if is_advice() and _start_sec is not None else 0.0
+    return time.monotonic() - _start_sec if is_validating() and _start_sec is not None else 0.0
 
 
-def begin() -> None:
+def begin_hidden_part() -> None:
     """Begin the cell's hidden part, which continues to the cell's end."""
     global _quiet
     _quiet = True
@@ -93,11 +93,11 @@ def note_inputs() -> None:
 
 def theirs(text: object) -> str:
     """Mark a text that the student's code made; in quiet mode, reasons leave it out."""
-    said = in_full(str(text))  # a name received over DDS may contain any character
+    said = without_marks(str(text))  # a name received over DDS may contain any character
     return f'{_OPEN}{said}{_CLOSE}' if _quiet else said
 
 
-def raised(said: str) -> str:
+def student_exception(said: str) -> str:
     """Mark an exception's text like "ValueError: …", except the name of a builtin exception."""
     kind, _, message = said.partition(':')
     if not isinstance(getattr(builtins, kind, None), type):
@@ -105,7 +105,7 @@ def raised(said: str) -> str:
     return f'{kind}: {theirs(message.strip())}' if message else kind
 
 
-def in_full(text: str) -> str:
+def without_marks(text: str) -> str:
     """Return a sentence without the marks of `theirs`, for those who may read all of it."""
     return text.replace(_OPEN, '').replace(_CLOSE, '')
 
@@ -143,7 +143,7 @@ def hint_in(outputs: Iterable[Any], reason: str) -> str:
 
 
 @contextmanager
-def said_in_full() -> Iterator[None]:
+def leave_quiet_mode() -> Iterator[None]:
     """Leave quiet mode meanwhile: for sentences that mention no hidden input."""
     global _quiet
     former, _quiet = _quiet, False
@@ -153,18 +153,18 @@ def said_in_full() -> Iterator[None]:
         _quiet = former
 
 
-def has_started(outputs: Iterable[Any]) -> bool:
+def has_reached_hidden_part(outputs: Iterable[Any]) -> bool:
     """Whether a cell with these outputs reached its hidden part."""
     return _BEGAN in _data(outputs, _MARK)
 
 
-def failed_only_there(outputs: Iterable[Any]) -> bool:
+def failed_only_in_hidden_part(outputs: Iterable[Any]) -> bool:
     """Whether a failed check failed in its hidden part, and not in the visible one."""
     said = _data(outputs, _MARK)
     return _BEGAN in said and _ALREADY not in said
 
 
-def has_told_inputs(outputs: Iterable[Any]) -> bool:
+def has_chosen_inputs(outputs: Iterable[Any]) -> bool:
     """Whether the hidden part chose inputs, so that the student's code knows them now."""
     said = _data(outputs, _MARK)
     return _BEGAN in said and _INPUTS in said
@@ -175,7 +175,7 @@ def details_in(outputs: Iterable[Any]) -> str:
     return next(iter(_data(outputs, _DETAILS)), '')[:MOST_DETAILS]
 
 
-def shown(outputs: Sequence[Any]) -> list[Any]:
+def visible_outputs(outputs: Sequence[Any]) -> list[Any]:
     """Return the outputs before the hidden part, without displays for the grader."""
     kept = []
     for output in outputs:

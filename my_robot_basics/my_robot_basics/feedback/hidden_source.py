@@ -5,10 +5,10 @@ import ast
 BEGIN, END = (f'{word} HIDDEN TESTS' for word in ('BEGIN', 'END'))
 # written whole, these words would make a search for leaked hidden tests find this file
 
-_HERE = "__import__('my_robot_basics.feedback.hidden', fromlist=['begin'])"
+_HERE = "__import__('my_robot_basics.feedback.hidden', fromlist=['start_cell'])"
 
 
-def marked(source: str, *, quiet: bool = False) -> str:
+def mark_hidden_part(source: str, *, quiet: bool = False) -> str:
     """Return a grade cell's source as it is run: with a call where its hidden part begins.
 
     With `quiet`, all of it counts as hidden: the student's code knows hidden inputs already.
@@ -16,12 +16,12 @@ def marked(source: str, *, quiet: bool = False) -> str:
     lines = []
     for line in source.split('\n'):
         indent = line[: len(line) - len(line.lstrip())]
-        lines.append(f'{indent}{_HERE}.begin()' if BEGIN in line else line)
-    lines.insert(_title_lines(source), f'{_HERE}.start(quiet={quiet})')
+        lines.append(f'{indent}{_HERE}.begin_hidden_part()' if BEGIN in line else line)
+    lines.insert(_title_lines(source), f'{_HERE}.start_cell(quiet={quiet})')
     return '\n'.join(lines)
 
 
-def visible(source: str) -> str:
+def without_hidden_part(source: str) -> str:
     """Return a grade cell's source as it is released to students."""
     kept, inside = [], False
     for line in source.split('\n'):

@@ -25,15 +25,15 @@ _MARKS = {
 """Characters of word processors and other keyboards, and what Python expects in their place."""
 
 
-def explained(told: str) -> str:
+def with_hint(told: str) -> str:
     """Return a text that names an exception, with a hint appended if there is one."""
-    why = what_to_do(told)
+    why = hint_for_exception(told)
     if found := _NAME.search(told):  # in a single line, the caret points nowhere
         told = told[: found.start('caret')] + told[found.end('caret') :]
     return told.rstrip('.') + why if why else told
 
 
-def what_to_do(said: str) -> str:
+def hint_for_exception(said: str) -> str:
     """Return a hint to append to an exception's text, such as 'AttributeError: …'; or ''."""
     if found := _CHARACTER.search(said):
         return _about_character(found[1])

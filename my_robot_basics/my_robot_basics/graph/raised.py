@@ -4,9 +4,8 @@ import re
 from collections.abc import Iterable
 
 from my_robot_basics.exchange import node_troubles, wire
-from my_robot_basics.feedback.hidden import raised as safely
-from my_robot_basics.feedback.hidden import theirs
-from my_robot_basics.feedback.python_errors import explained, what_to_do
+from my_robot_basics.feedback.hidden import student_exception, theirs
+from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 
 _GETS_TOO_LITTLE = re.compile(r'\(\) missing \d+ required positional arguments?: ([^(]*)$')
 """What Python says if a function needs more than rclpy gives it: no line of the student's calls
@@ -21,8 +20,8 @@ def what_raised(node_names: Iterable[str]) -> str:
     name, said = next((each for each in raised if each[1]), ('', ''))
     if not said:
         return ''
-    why = f'its callback raised {safely(said)}'
-    if said.endswith('object is not callable') and not what_to_do(said):
+    why = f'its callback raised {student_exception(said)}'
+    if said.endswith('object is not callable') and not hint_for_exception(said):
         why += ', so give a method by its name, without parentheses'
     if found := _GETS_TOO_LITTLE.search(said):
         return why + _why_too_little(theirs(found[1]))
@@ -37,7 +36,7 @@ def what_raised(node_names: Iterable[str]) -> str:
         why += f', so what you give it has to be made with `{theirs(type_name)}`'
     elif 'bad argument type for built-in operation' in said:
         why += ', so a field of the message holds a value of another type'
-    return explained(why)
+    return with_hint(why)
 
 
 def what_stopped(node_names: Iterable[str]) -> str:
@@ -55,7 +54,7 @@ def what_ended_a_thread() -> str:
     An executor of the student's may have spun there: then the callbacks of its nodes have stopped.
     """
     said = node_troubles.last_raised(wire.THREADS)
-    return f'a thread of the notebook raised {safely(said)}' if said else ''
+    return f'a thread of the notebook raised {student_exception(said)}' if said else ''
 
 
 def _why_too_little(names: str) -> str:

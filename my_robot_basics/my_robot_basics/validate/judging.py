@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
-from my_robot_basics.feedback.hidden_source import marked, visible
+from my_robot_basics.feedback.hidden_source import mark_hidden_part, without_hidden_part
 from my_robot_basics.validate.budget import Budget
 from my_robot_basics.validate.cell_names import number_of
 from my_robot_basics.validate.cells import grade_id, graded_id
@@ -140,16 +140,16 @@ async def _judge_cells(
     given_up = [(_name(cells, i), run) for i, run in runs.items() if run.cut_after_sec]
     checks, cut, quiet = {}, [], False
     for index in exercise.grades:
-        source = marked(cells[index].source, quiet=quiet)
+        source = mark_hidden_part(cells[index].source, quiet=quiet)
         can_tell = rooms.student_alive and not any(each.cut_after_sec for _, each in own)
         run = await looks.run_check(rooms, source) if can_tell else None
         outputs = run.outputs if run else []
         open_ = judge_overdue(cells[index], run, given_up)
         verdict = open_ or judge(cells[index], run, own)
-        if quiet and verdict.details and not hidden.has_started(outputs):
+        if quiet and verdict.details and not hidden.has_reached_hidden_part(outputs):
             cut.append(index)
         checks[index] = verdict, [] if quiet else outputs
-        quiet = quiet or hidden.has_told_inputs(outputs)
+        quiet = quiet or hidden.has_chosen_inputs(outputs)
     return checks, cut
 
 
@@ -159,7 +159,7 @@ async def _explained_in_full(notebook: NotebookNode, rooms: Rooms, cut: Checks) 
     for index, (verdict, _) in cut.items():
         cell = notebook.cells[index]
         if rooms.student_alive:
-            run = await rooms.run_check(marked(visible(cell.source)))
+            run = await rooms.run_check(mark_hidden_part(without_hidden_part(cell.source)))
             again = judge(cell, run, [])
             if again.outcome == 'failed':
                 told = replace(verdict, reason=again.reason, hint=again.hint, details='')

@@ -2,7 +2,7 @@
 
 import ast
 
-from my_robot_basics.feedback.hidden_source import visible
+from my_robot_basics.feedback.hidden_source import without_hidden_part
 
 
 def title_of_failure(source: str) -> str:
@@ -11,7 +11,11 @@ def title_of_failure(source: str) -> str:
     For a check that is hidden as a whole, it is its own title.
     """
     title = title_of_check(source)
-    return f'Checked at grading, beyond “{title}”' if checks_something(visible(source)) else title
+    return (
+        f'Checked at grading, beyond “{title}”'
+        if checks_something(without_hidden_part(source))
+        else title
+    )
 
 
 def title_of_check(source: str) -> str:

@@ -2,7 +2,7 @@
 
 import re
 
-from my_robot_basics.feedback.python_errors import explained
+from my_robot_basics.feedback.python_errors import with_hint
 from my_robot_basics.session.errors import without_signatures
 from my_robot_basics.validate.limits import FLOOD_CHARACTERS
 from my_robot_basics.validate.outputs import CUT_OFF, CellRun
@@ -36,7 +36,7 @@ def describe_cell_error(name: str, run: CellRun) -> str | None:
     if run.error is not None:
         what = without_signatures(run.error.evalue) or _own_line(run.error.traceback)
         said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {what}').rstrip(': ')
-        return explained(f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}')
+        return with_hint(f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}')
     return None
 
 

@@ -70,15 +70,19 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
         raise RoomFailure(f'the check `{name}` came to no verdict: {_what_happened(run)}')
     reason = run.error.evalue.strip() or 'the check failed and gave no reason'
     details = hidden.details_in(run.outputs)
-    if run.error.ename == 'AssertionError' and hidden.has_started(run.outputs):
+    if run.error.ename == 'AssertionError' and hidden.has_reached_hidden_part(run.outputs):
         reason, details = _in_words(reason, cell), reason
     notes += tuple(sentence for each in own if (sentence := describe_cell_error(*each)))
-    if run.ending and hidden.has_started(run.outputs):  # a signal's number may be a hidden input
+    # a signal's number may be a hidden input
+    if run.ending and hidden.has_reached_hidden_part(run.outputs):
         notes += ('in the part checked at grading, what you started has ended',)
         details = '; '.join(filter(None, (details, run.ending)))
     elif run.ending:
         notes += (f'what you started has ended: {run.ending}',)
-    beyond, hint = hidden.failed_only_there(run.outputs), hidden.hint_in(run.outputs, reason)
+    beyond, hint = (
+        hidden.failed_only_in_hidden_part(run.outputs),
+        hidden.hint_in(run.outputs, reason),
+    )
     if run.error.ename != 'PartlyRight':
         return Verdict(name, 'failed', points, reason, notes, details, 0.0, beyond, hint)
     earned = hidden.points_in(run.outputs)
@@ -117,7 +121,7 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
     Text on stdout and pictures stay. A failure becomes one `error` output with the reason and no
     line of the test; partial credit becomes the reason as text and the points as the result.
     """
-    shown = hidden.shown(list(outputs))
+    shown = hidden.visible_outputs(list(outputs))
     cell.outputs = [out for out in shown if out.output_type in _SHOWN and not _is_stderr(out)]
     cell.metadata[KEY] = {
         'role': 'grade',
@@ -143,7 +147,7 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
 
 
 def _notes(run: CellRun) -> Iterable[str]:
-    for output in hidden.shown(run.outputs):
+    for output in hidden.visible_outputs(run.outputs):
         for line in output.get('text', '').splitlines():
             if line.startswith(NOTE):
                 yield line.removeprefix(NOTE)
