@@ -40,10 +40,10 @@ def test_the_graph_lists_every_endpoint_and_no_hidden_node():
 )
 def test_an_unchanged_graph_counts_as_settled(monkeypatch, nodes, was, ago_sec, is_waited_for):
     now, waited = picture(nodes, publishers={'/t': nodes}), []
-    monkeypatch.setattr(graphs, '_look', lambda node: now)
+    monkeypatch.setattr(graphs, '_read_graph', lambda node: now)
     earlier = time.monotonic() - ago_sec, picture(was, publishers={'/t': was})
     watcher = types.SimpleNamespace(node=None, earlier_look=earlier, spin_for=waited.append)
-    assert graphs.take(watcher) == now
+    assert graphs.take_snapshot(watcher) == now
     assert bool(waited) == is_waited_for
 
 

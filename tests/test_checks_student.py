@@ -181,9 +181,9 @@ def test_any_bad_reply_is_a_failed_check(monkeypatch, reply):
 )
 def test_malformed_replies_about_nodes_are_ignored(monkeypatch, body):
     monkeypatch.setattr(node_troubles, 'reply_value', lambda request: body)
-    assert (node_troubles.last_raised('/a'), node_troubles.unfinished('/a')) == ('', '')
+    assert (node_troubles.last_raised('/a'), node_troubles.blocking_line('/a')) == ('', '')
     assert node_troubles.unpublished_field('/a') == ('', '')
-    assert node_troubles.ended() == ('', '', '')
+    assert node_troubles.how_answer_ended() == ('', '', '')
     assert node_troubles.times_raised('/a') == (5 if body == 5 else 0)
 
 
@@ -275,7 +275,7 @@ class Waits(Node):
 def test_a_callback_that_does_not_return_is_reported_with_its_line(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     node = live.run(Waits)
-    live.wait_until(lambda: node_troubles.unfinished('/waits'))
+    live.wait_until(lambda: node_troubles.blocking_line('/waits'))
     said = r'its callback has not returned \(line \d+: self\.end\.wait\(\)'
     assert re.match(said, what_stopped(['/other', '/waits']))
     assert what_stopped(['/other']) == ''
@@ -311,7 +311,7 @@ def _raise(error):
 def test_a_callback_that_keeps_returning_is_not_called_unfinished(monkeypatch):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     live.run(Node, 'ticks').create_timer(0.01, lambda: None)
-    assert node_troubles.unfinished('/ticks') == ''
+    assert node_troubles.blocking_line('/ticks') == ''
     live.stop()
 
 

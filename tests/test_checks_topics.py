@@ -214,7 +214,8 @@ def test_the_wait_is_short_if_the_notebook_reports_no_endpoint(run, monkeypatch)
 def test_there_is_no_wait_if_no_endpoint_can_appear(run, monkeypatch):
     monkeypatch.setattr(topic_endpoints, 'ABSENT_SEC', 20.0)
     monkeypatch.setattr(topic_endpoints, 'PUBLISHER_SEC', 20.0)
-    for may_come in '_threads', '_processes', '_tasks', '_alarm':  # those of pytest
+    # pytest has threads and processes of its own
+    for may_come in '_has_threads', '_has_processes', '_has_tasks', '_has_alarm':
         monkeypatch.setattr(settled, may_come, lambda: False)
     run(Node, 'idle').create_subscription(JointState, TOPIC, print, 10)
     with pytest.raises(CheckFailed, match=r'a publisher on .*, saw none: /idle is at the other'):

@@ -52,10 +52,10 @@ def test_the_nodes_of_a_lesson_stay_far_below_the_limit_of_endpoints():
 def test_a_look_at_an_ever_changing_graph_ends(monkeypatch):
     looks = iter(range(1_000_000))
     monkeypatch.setattr(graphs, 'MOST_TAKE_SEC', 0.0)
-    monkeypatch.setattr(graphs, '_look', lambda node: next(looks))
+    monkeypatch.setattr(graphs, '_read_graph', lambda node: next(looks))
     monkeypatch.setattr(graphs, '_has_unknown', lambda picture: True)
     with Watcher() as here:
-        assert graphs.take(here) < 3
+        assert graphs.take_snapshot(here) < 3
 
 
 def test_a_name_that_is_no_text_fails_a_check(node, monkeypatch):

@@ -59,7 +59,7 @@ def _stop():
 
 def findings(name=NAME, **options):
     (diagnosis,) = diagnose(
-        name, domain_id=classroom.enter(), raised=troubles.of_service, **options
+        name, domain_id=classroom.enter(), raised=troubles.last_raised_in_service, **options
     )
     return diagnosis.findings
 
@@ -261,7 +261,7 @@ def test_a_callback_that_waits_for_an_absent_server_is_reported_and_fixed():
 def test_a_server_that_returns_no_response_is_reported_and_fixed():
     run(node_class(SERVER, (RETURN, 'pass')))
     run(node_class(ASKER))
-    assert wait_for(lambda: troubles.of_service(NAME))
+    assert wait_for(lambda: troubles.last_raised_in_service(NAME))
     found = first_finding()
     assert found.title == 'the callback returned no response'
     run(node_class(SERVER, (RETURN, found.code)))
@@ -272,7 +272,7 @@ def test_a_server_that_returns_no_response_is_reported_and_fixed():
 def test_a_server_that_raises_is_reported_with_its_exception():
     run(node_class(SERVER, (WORK, "raise ValueError('it is jammed')")))
     run(node_class(ASKER))
-    assert wait_for(lambda: troubles.of_service(NAME))
+    assert wait_for(lambda: troubles.last_raised_in_service(NAME))
     found = first_finding()
     assert found.title == 'the callback raised'
     assert 'ValueError: it is jammed' in found.seen
@@ -284,7 +284,7 @@ def test_a_server_that_raises_is_reported_with_its_exception():
 def test_an_exception_of_a_timer_is_not_attributed_to_the_service():
     run(node_class(SERVER, (SERVICE, f'{SERVICE}; self.create_timer(0.1, lambda: 1 / 0)')))
     asker = run(node_class(ASKER))
-    assert wait_for(lambda: troubles.times('/server') > 1)
+    assert wait_for(lambda: troubles.times_raised('/server') > 1)
     assert_well(asker)
 
 

@@ -67,7 +67,7 @@ def test_services_and_actions_of_two_nodes_with_one_name_are_all_found(namesakes
     with Watcher() as watcher:
 
         def ends():
-            found, moves = services.take(watcher.node), actions.take(watcher.node)
+            found, moves = services.take_graph(watcher.node), actions.take_graph(watcher.node)
             own = {name: each for name, each in found.servers.items() if '/_' not in name}
             return own, found.clients, moves.servers
 
@@ -102,7 +102,7 @@ def test_a_type_that_is_none_of_ros_keeps_its_dds_name(monkeypatch, dds_type, ty
     monkeypatch.setattr(services, 'subscription_infos', lambda node, name, is_dds: [info])
     monkeypatch.setattr(services, 'publisher_infos', lambda node, name, is_dds: [])
     node = SimpleNamespace(get_node_names_and_namespaces=lambda: [])
-    found = services.take_ends(node, {'/solve_ik': '/solve_ik'})
+    found = services.take_servers_and_clients(node, {'/solve_ik': '/solve_ik'})
     assert found.servers == {'/solve_ik': {'/a': (type_,)}}
 
 

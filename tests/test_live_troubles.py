@@ -17,20 +17,20 @@ from my_robot_basics import live
 def test_an_error_and_an_unpublished_field_are_forgotten_with_their_node(monkeypatch, forget):
     monkeypatch.setattr(troubles, '_unpublished', lambda error: ('header.stamp', 'Time'))
     troubles.remember('/a', TypeError('no stamp'))
-    assert (troubles.last('/a'), troubles.field('/a')[0]) == (
+    assert (troubles.last_raised('/a'), troubles.unpublished_field('/a')[0]) == (
         'TypeError: no stamp',
         'header.stamp',
     )
     forget()
-    assert (troubles.last('/a'), troubles.times('/a')) == ('', 0)
-    assert troubles.field('/a') == ('', '')
+    assert (troubles.last_raised('/a'), troubles.times_raised('/a')) == ('', 0)
+    assert troubles.unpublished_field('/a') == ('', '')
 
 
 def test_an_exception_is_counted_only_after_its_unpublished_field_is_known(monkeypatch):
     known = []
 
     def look(error):
-        known.append((troubles.last('/a'), troubles.times('/a')))
+        known.append((troubles.last_raised('/a'), troubles.times_raised('/a')))
         return '', ''
 
     monkeypatch.setattr(troubles, '_unpublished', look)
@@ -44,7 +44,7 @@ def test_an_exception_inside_a_library_is_reported_with_the_librarys_line():
         json.loads('{')
     except ValueError as error:
         troubles.remember('/a', error.with_traceback(error.__traceback__.tb_next))
-    assert ', in raw_decode: ' in troubles.last('/a')
+    assert ', in raw_decode: ' in troubles.last_raised('/a')
     troubles.forget('/a')
 
 
@@ -57,9 +57,9 @@ def test_publishing_an_object_that_is_not_a_message_names_no_field():
             self.create_timer(0.01, lambda: self.publisher.publish(5))
 
     live.run(Wrong)
-    live.wait_until(lambda: troubles.times('/wrong') > 1)
-    assert troubles.last('/wrong').startswith('TypeError')
-    assert troubles.field('/wrong') == ('', '')
+    live.wait_until(lambda: troubles.times_raised('/wrong') > 1)
+    assert troubles.last_raised('/wrong').startswith('TypeError')
+    assert troubles.unpublished_field('/wrong') == ('', '')
     live.stop()
 
 
@@ -71,9 +71,9 @@ def test_unfinished_returns_the_line_of_a_callback_that_keeps_a_node_busy(monkey
     seen = SimpleNamespace(look=lambda: None, callbacks=lambda at_least_sec: found)
     monkeypatch.setattr(inside, 'Inside', lambda: seen)
     monkeypatch.setattr(troubles.time, 'sleep', lambda seconds: None)
-    assert troubles.unfinished('/a') == 'line 3'
-    assert troubles.unfinished('/b') == 'line 1'
-    assert troubles.unfinished('/c') == ''
+    assert troubles.blocking_line('/a') == 'line 3'
+    assert troubles.blocking_line('/b') == 'line 1'
+    assert troubles.blocking_line('/c') == ''
 
 
 @pytest.mark.parametrize(

@@ -187,6 +187,6 @@ def test_the_probe_receives_a_message_only_while_one_is_announced(loop):
     try:
         probe.receive()
     finally:
-        probe.silence()
+        probe.remove_announcement()
     with pytest.raises(TimeoutError):
         probe.receive(0.3)

@@ -53,7 +53,7 @@ def _expect_answer(server: ServedAction, name: str, client: Client) -> None:
     watch, asked = Stopwatch(), client.call_async(NOTHING)
     if server.watcher.spin_until(asked.done, timeout_sec=FIRST_SEC):
         return
-    line = node_troubles.unfinished(name)
+    line = node_troubles.blocking_line(name)
     is_waiting = any(word in line for word in WAITS)
     while watch.free_sec() < AWAY_SEC and watch.wall_sec() < MOST_SEC:
         if server.watcher.spin_until(asked.done, timeout_sec=LOOK_SEC):

@@ -33,7 +33,7 @@ def action_server(
     """
     with Watcher(shared=True) as watcher:
         outcomes = Topic(to).listen(watcher, type_=String)
-        others = actions.take(watcher.node).servers.get(name, {})
+        others = actions.take_graph(watcher.node).servers.get(name, {})
         expect(
             not others,
             expected=f'no server of the action {name} but that of this check',

@@ -25,7 +25,7 @@ _NONE_THERE = 'send no goal if response.reachable is False: it has no angles'
 
 def why_no_client(watcher: Watcher) -> str:
     """Why `/solve_ik` has no client."""
-    return services.take(watcher.node).why_none(SOLVE_IK, maker='create_client')
+    return services.take_graph(watcher.node).why_none(SOLVE_IK, maker='create_client')
 
 
 def why_not_asked(watcher: Watcher, word_before: str, *, was_skipped: bool) -> str:
@@ -61,7 +61,7 @@ def why_no_goal(watcher: Watcher) -> str:
     """Why no goal comes, although a request was answered."""
     if not answers_parameters(watcher, NODE):
         return waits_for_answer(SOLVE_IK)
-    ends = actions.take(watcher.node)
+    ends = actions.take_graph(watcher.node)
     if not ends.clients.get(MOVE_ARM):
         return ends.why_none(MOVE_ARM, maker='ActionClient')
     return 'when the answer is there, send its elbow_up as a goal with send_goal_async'

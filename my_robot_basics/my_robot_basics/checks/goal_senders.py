@@ -31,7 +31,7 @@ def why_no_goal(
     """
     if hint := raised.hint_or_thread():
         return hint
-    ends = actions.take(watcher.node)
+    ends = actions.take_graph(watcher.node)
     clients = ends.clients.get(name, {})
     if not clients:
         return ends.why_none(name, maker='ActionClient')

@@ -67,7 +67,7 @@ class NodeCommand:
             # on a busy machine, a node may be discovered long before its publishers
             watcher.spin_until_free(lambda: self._publishes(watcher), free_sec=NODE_SEC)
             graphs.wait_for_publisher(watcher, topic_name, timeout_sec=1.0)
-            snapshot = graphs.take(watcher)
+            snapshot = graphs.take_snapshot(watcher)
         publishers = snapshot.publishers(topic_name)
         names = [
             name for name, nodes in snapshot.publisher_names.items() if self.node_name in nodes
@@ -90,7 +90,7 @@ class NodeCommand:
         self._expect_of_the_command(topic_name, instead_of=instead_of)
 
     def _publishes(self, watcher: Watcher) -> bool:
-        names = graphs.take(watcher).publisher_names
+        names = graphs.take_snapshot(watcher).publisher_names
         return any(self.node_name in nodes for name, nodes in names.items() if name not in _OF_ALL)
 
     def _expect_of_the_command(self, topic_name: str, *, instead_of: str) -> None:
@@ -127,7 +127,7 @@ class NodeCommand:
             watcher.spin_until_free(
                 lambda: self.node_name in graphs.node_names(watcher.node), free_sec=NODE_SEC
             )
-            names = graphs.take(watcher).nodes()
+            names = graphs.take_snapshot(watcher).nodes()
             count = graphs.node_names(watcher.node).count(self.node_name)
         expect(
             count > 0,

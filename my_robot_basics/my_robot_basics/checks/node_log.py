@@ -119,7 +119,7 @@ class NodeLog:
         is_settled = graphs.is_settled(self._watcher, self.node_name)
         timeout_sec = graphs.SETTLED_SEC if is_settled else NODE_SEC
         if not self._watcher.spin_until(self._is_there, timeout_sec=timeout_sec):
-            others = graphs.take(self._watcher).nodes()
+            others = graphs.take_snapshot(self._watcher).nodes()
             expect(
                 self.node_name not in others,
                 expected=f'the log of {self.node_name} on /rosout',

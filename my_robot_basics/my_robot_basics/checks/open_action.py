@@ -82,7 +82,7 @@ class OpenAction:
     def expect_alone(self) -> None:
         """The action has no second server at this time. Raises CheckFailed."""
         count = self.watcher.node.count_services(f'{self.name}/_action/send_goal')
-        names = ', '.join(sorted(actions.take(self.watcher.node).servers.get(self.name, {})))
+        names = ', '.join(sorted(actions.take_graph(self.watcher.node).servers.get(self.name, {})))
         expect(
             count <= 1,  # count servers, not names: two nodes may have the same name
             expected=f'one server of the action {self.name}',
@@ -160,14 +160,16 @@ class OpenAction:
 
         def is_there() -> bool:
             found.clear()
-            found.update(actions.take(self.watcher.node).servers.get(self.name, {}))
+            found.update(actions.take_graph(self.watcher.node).servers.get(self.name, {}))
             return bool(found)
 
         if none := wait_for_server(self.watcher, is_there):
             fail(
                 expected=f'a server of the action {self.name}',
                 seen=none.seen,
-                hint=actions.take(self.watcher.node).why_none(self.name, maker='ActionServer'),
+                hint=actions.take_graph(self.watcher.node).why_none(
+                    self.name, maker='ActionServer'
+                ),
                 doubt=none.doubt,
             )
         expect_type(self.name, self.type, found, maker='ActionServer')

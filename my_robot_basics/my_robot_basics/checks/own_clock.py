@@ -93,7 +93,7 @@ def _while_ahead_inside(
             return None
         proofs = _receive_stamps(watcher, topic_name, type_)
         clock = watcher.node.create_publisher(Clock, '/clock', 1)
-        names = {*publishers, *graphs.take(watcher).nodes()}
+        names = {*publishers, *graphs.take_snapshot(watcher).nodes()}
         former = {name: student.set_use_sim_time(name, value=True) for name in names}
         try:
             if any(former[name] is None for name in publishers):

@@ -81,7 +81,7 @@ class RunningExecutable:
         if not is_there():
             doubt = doubt_after(watch, NODE_SEC)
             wanted = f'the node {node_name} of {self.executable}'
-            names = graphs.take(watcher).nodes()
+            names = graphs.take_snapshot(watcher).nodes()
             if self._state()[0] is not None:
                 self._fail_ended(wanted)
             fail(

@@ -8,7 +8,7 @@ from rclpy.qos import QoSProfile
 
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
-from my_robot_basics.graph.qos_compatibility import incompatible
+from my_robot_basics.graph.qos_compatibility import incompatible_policies
 from my_robot_basics.graph.watcher import Watcher
 
 MOST_AT_ONCE = 10_000
@@ -46,7 +46,7 @@ class Recorder:
         if self._subscription.get_publisher_count() > 0:
             return True
         infos = graphs.publisher_infos(self._node, self.topic_name)
-        gaps = [incompatible(info.qos_profile, self._qos_profile) for info in infos]
+        gaps = [incompatible_policies(info.qos_profile, self._qos_profile) for info in infos]
         return bool(gaps) and all(TOLD & each.keys() for each in gaps)
 
     def publishers(self) -> tuple[str, ...]:

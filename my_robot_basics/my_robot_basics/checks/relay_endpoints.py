@@ -20,7 +20,7 @@ from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import theirs
 from my_robot_basics.graph import graphs
-from my_robot_basics.graph.qos_compatibility import brief, incompatible, leave_out
+from my_robot_basics.graph.qos_compatibility import hint_to_omit, incompatible_policies, qos_text
 from my_robot_basics.graph.raised import what_raised, what_stopped
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import Watcher
@@ -73,14 +73,14 @@ class RelayEndpoints:
         if not refused:
             self.expect_type(watcher, type_)
             self._fail_absent(watcher, timeout_sec=timeout_sec)
-        asked = {brief(asked) for asked in _requests(watcher.node, self.source)}
+        asked = {qos_text(asked) for asked in _requests(watcher.node, self.source)}
         policies = {qos_policy_name_from_kind(kind) for kind in refused}
         hint = 'give create_subscription a profile with reliability and durability as offered'
         if unpromised := policies - {'RELIABILITY', 'DURABILITY'}:
-            hint = leave_out(unpromised)
+            hint = hint_to_omit(unpromised)
         fail(
             expected=f'a subscription on {self.source} that requests no more than'
-            f' {brief(offered)}, which is what the publisher offers',
+            f' {qos_text(offered)}, which is what the publisher offers',
             seen=f'{" and ".join(sorted(asked))} (incompatible: {" and ".join(sorted(policies))})',
             hint=hint,
         )
@@ -110,7 +110,7 @@ class RelayEndpoints:
         offers = graphs.publisher_infos(watcher.node, self.to)
         names = {graphs.full_name(offer) for offer in offers}
         asked = {
-            brief(info.qos_profile)
+            qos_text(info.qos_profile)
             for info in graphs.subscription_infos(watcher.node, self.source)
             if graphs.full_name(info) in names
         }
@@ -132,9 +132,9 @@ class RelayEndpoints:
         if is_latched and {each.reliability for each in asked} == {ReliabilityPolicy.BEST_EFFORT}:
             return 'request RELIABLE, too: only then do you receive earlier messages'
         offers = watcher.node.get_publishers_info_by_topic(self.source)
-        gaps = [incompatible(offer.qos_profile, each) for offer in offers for each in asked]
+        gaps = [incompatible_policies(info.qos_profile, each) for info in offers for each in asked]
         if is_latched and gaps and all(gaps):
-            return leave_out(gaps[0])
+            return hint_to_omit(gaps[0])
         listeners = graphs.subscription_infos(watcher.node, self.source)
         if why := what_stopped(map(graphs.full_name, listeners)):
             return f'{why}; fix that first'
@@ -189,7 +189,7 @@ class RelayEndpoints:
 
     def _graph(self, watcher: Watcher) -> GraphSnapshot:
         """The graph without other nodes that publish on `source`: the fault is not theirs."""
-        everybody = graphs.take(watcher)
+        everybody = graphs.take_snapshot(watcher)
         others = everybody.without(everybody.publishers(self.source))
         return others if others.nodes() else everybody
 

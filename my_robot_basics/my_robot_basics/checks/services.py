@@ -73,14 +73,14 @@ class Service:
 
         def is_there() -> bool:
             found.clear()
-            found.update(services.take(watcher.node).servers.get(self.name, {}))
+            found.update(services.take_graph(watcher.node).servers.get(self.name, {}))
             return bool(found)
 
         if none := wait_for_server(watcher, is_there):
             fail(
                 expected=f'a server of {self.name}',
                 seen=none.seen,
-                hint=services.take(watcher.node).why_none(self.name, maker='create_service'),
+                hint=services.take_graph(watcher.node).why_none(self.name, maker='create_service'),
                 doubt=none.doubt,
             )
         expect_type(self.name, self.type, found, maker='create_service')
@@ -123,7 +123,7 @@ class Service:
             return raised.hint()
         if why := raised.hint_or_thread():
             return why
-        if line := node_troubles.unfinished(server):
+        if line := node_troubles.blocking_line(server):
             return (
                 f'its callback has not returned ({theirs(line)}), so see what it waits for: no '
                 'answer is delivered to its node while it waits'

@@ -17,11 +17,11 @@ def expect_no_other(watcher: Watcher, name: str, *, own: int) -> None:
     """The service has only the servers of the check, `own` in number. Raises CheckFailed."""
     node = watcher.node
     is_alone = watcher.spin_until(lambda: node.count_services(name) <= own, timeout_sec=GONE_SEC)
-    known = sorted(services.take(node).servers.get(name, {}))
+    known = sorted(services.take_graph(node).servers.get(name, {}))
     expect(
         is_alone,
         expected=f'no server of {name} but that of this check',
-        # `services.take` leaves out nodes whose names begin with _
+        # `services.take_graph` leaves out nodes whose names begin with _
         seen=theirs(', '.join(known)) if known else 'one more',
         hint='stop that node: here, the check itself answers',
         cause=f'another node serves {name}',

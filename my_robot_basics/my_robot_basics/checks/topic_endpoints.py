@@ -58,7 +58,7 @@ class TopicEndpoints:
         watcher: Watcher,
         *,
         type_: type | None = None,
-        take: Callable[[Watcher], GraphSnapshot] = graphs.take,
+        take: Callable[[Watcher], GraphSnapshot] = graphs.take_snapshot,
     ) -> Recorder:
         """Subscribe with the publishers' own type and QoS; wait for them first.
 
@@ -123,11 +123,11 @@ class TopicEndpoints:
         if graphs.publisher_infos(watcher.node, self.name):
             # a publisher of another type may have been discovered only now
             self._message_type(watcher)
-        hint = graphs.take(watcher).why_no_message(self.name)
+        hint = graphs.take_snapshot(watcher).why_no_message(self.name)
         fail(expected=f'messages on {self.name}', seen=seen, hint=hint)
 
     def _fail_no_subscription(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
-        hint = graphs.take(watcher).why_no_subscription(self.name)
+        hint = graphs.take_snapshot(watcher).why_no_subscription(self.name)
         if infos := graphs.subscription_infos(watcher.node, self.name):
             hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
         seen = graphs.none_in(timeout_sec)

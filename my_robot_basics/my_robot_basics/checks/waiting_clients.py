@@ -54,7 +54,7 @@ class WaitingClient:
         """
         if raised := self.raised.hint_or_thread():
             return raised
-        ends = services.take(self.watcher.node)
+        ends = services.take_graph(self.watcher.node)
         clients = ends.clients.get(self.name, {})
         types = {each for found in clients.values() for each in found}
         if not clients:

@@ -43,7 +43,7 @@ _RAISED = 'Error raised in execute callback: '
 
 def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
     """Return all action clients and servers, except those of hidden nodes."""
-    ends = actions.take(node)
+    ends = actions.take_graph(node)
     kinds: dict[Kind, dict] = {'client': ends.clients, 'server': ends.servers}
     return tuple(
         Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
@@ -120,7 +120,7 @@ def look(watcher: Watcher, name: str, *, domain_id: int, look_sec: float) -> Act
     return ActionEvidence(
         name=name,
         endpoints=endpoints,
-        nodes=dict.fromkeys(actions.take(watcher.node).node_names, NodeState(answers=None)),
+        nodes=dict.fromkeys(actions.take_graph(watcher.node).node_names, NodeState(answers=None)),
         remaps=remaps.remaps_in_domain(domain_id),
         domain_id=domain_id,
         missing_participants=missing_participants(watcher.node, domain_id),

@@ -97,7 +97,7 @@ def _find(watcher: Watcher, name: str, domain_id: int) -> _Graph:
 
 
 def _take(watcher: Watcher) -> _Graph:
-    snapshot = graphs.take(watcher)
+    snapshot = graphs.take_snapshot(watcher)
     return _Graph(
         snapshot,
         tuple(looking.endpoints_of(watcher.node)),
@@ -117,6 +117,6 @@ def _ends_in_other_domains(
     found = {}
     for other in looking.other_domains(domain_id):
         with Watcher(domain_id=other) as watcher:
-            graphs.take(watcher)
+            graphs.take_snapshot(watcher)
             found[other] = tuple(end for end in ends_of(watcher.node) if end.name == name)
     return found

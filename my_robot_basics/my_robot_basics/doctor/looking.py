@@ -48,7 +48,7 @@ def look(
         watcher.spin_until(
             lambda: missing_participants(watcher.node, domain_id) <= 0, timeout_sec=MISSING_SEC
         )
-        graph = graphs.take(watcher)
+        graph = graphs.take_snapshot(watcher)
     endpoints = tuple(endpoints_of(watcher.node))
     ends = {end.node_name for end in endpoints if end.name == topic_name}
     evidence = Evidence(

@@ -31,7 +31,7 @@ Raised = Callable[[str], Mapping[str, str]]
 
 def endpoints_of(node: Node) -> tuple[Endpoint, ...]:
     """Return all service clients and servers, except ROS's own and hidden nodes'."""
-    ends = services.take(node)
+    ends = services.take_graph(node)
     kinds: dict[Kind, dict] = {'client': ends.clients, 'server': ends.servers}
     return tuple(
         Endpoint(kind=kind, node_name=node_name, name=name, type_name=type_name)
@@ -68,7 +68,7 @@ def look(
     return ServiceEvidence(
         name=name,
         endpoints=endpoints,
-        nodes=dict.fromkeys(services.take(watcher.node).node_names, NodeState(answers=None))
+        nodes=dict.fromkeys(services.take_graph(watcher.node).node_names, NodeState(answers=None))
         | answers,
         remaps=remaps.remaps_in_domain(domain_id),
         domain_id=domain_id,

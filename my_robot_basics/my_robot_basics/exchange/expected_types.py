@@ -56,7 +56,7 @@ def _other_type(found: object, wanted: tuple[type, ...]) -> str:
     return 'print(type(…)) of the value shows what it is'
 
 
-def not_always(name: str, returns: type | tuple[type, ...] | None) -> str:
+def cause_of_wrong_type(name: str, returns: type | tuple[type, ...] | None) -> str:
     """Return the cause of a failure, without the returned value."""
     return f'`{name}` does not always return {wanted_type(returns)}'
 

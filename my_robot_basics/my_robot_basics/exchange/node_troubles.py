@@ -32,13 +32,13 @@ def times_raised(node_name: str) -> int:
     return body if type(body) is int else 0
 
 
-def unfinished(node_name: str) -> str:
+def blocking_line(node_name: str) -> str:
     """Return the line at which a callback of that node blocks all others, or ''."""
     body = reply_value(wire.request(op='unfinished', name=node_name))
     return shorten(body) if isinstance(body, str) else ''
 
 
-def ended() -> tuple[str, str, str]:
+def how_answer_ended() -> tuple[str, str, str]:
     """Return which node a later cell has ended, the node that took its place, and their name.
 
     The last two are '' if the cell has stopped it; all three if the notebook reports none.

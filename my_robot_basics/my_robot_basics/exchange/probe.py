@@ -22,13 +22,13 @@ _announced: list = []
 
 
 def announce() -> None:
-    """Publish one transient-local message, which is available until `silence`."""
+    """Publish one transient-local message, which is available until `remove_announcement`."""
     context, node = _node('_probe_student_room')
     node.create_publisher(Empty, TOPIC_NAME, QOS).publish(Empty())
     _announced.append((context, node))
 
 
-def silence() -> None:
+def remove_announcement() -> None:
     """Remove the announcement, its node and its context."""
     while _announced:
         _end(*_announced.pop())

@@ -62,34 +62,34 @@ def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     )
 
 
-def _trouble(node_name: str) -> str:
+def _last_raised(node_name: str) -> str:
     """Return the last exception in a callback of a node that `live` spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
-    return troubles.last(node_name) if troubles else ''
+    return troubles.last_raised(node_name) if troubles else ''
 
 
 def _times_raised(node_name: str) -> int:
     """Return how often callbacks of a node that `live` spins have raised."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
-    return troubles.times(node_name) if troubles else 0
+    return troubles.times_raised(node_name) if troubles else 0
 
 
 def _unpublished_field(node_name: str) -> tuple[str, str]:
     """Return the field that kept a node from publishing, and its type."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
-    return troubles.field(node_name) if troubles else ('', '')
+    return troubles.unpublished_field(node_name) if troubles else ('', '')
 
 
-def _ended(_: str) -> tuple[str, str, str]:
+def _how_answer_ended(_: str) -> tuple[str, str, str]:
     """Return the class of the answer if its node was ended, what took its place, and its name."""
     ended = sys.modules.get('my_robot_basics.live.ended')
     return ended.how_answer_ended() if ended else ('', '', '')
 
 
-def _unfinished(node_name: str) -> str:
+def _blocking_line(node_name: str) -> str:
     """Return the line at which a callback blocks a node that `live` spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
-    return troubles.unfinished(node_name) if troubles else ''
+    return troubles.blocking_line(node_name) if troubles else ''
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
@@ -126,11 +126,11 @@ def _settled_nodes(_: str, *args: float) -> list[str] | None:
 _OTHERS: dict[str, Callable[..., object]] = {
     'endpoint': _has_endpoint,
     'settled': _settled_nodes,
-    'trouble': _trouble,
+    'trouble': _last_raised,
     'raised': _times_raised,
     'field': _unpublished_field,
-    'unfinished': _unfinished,
-    'ended': _ended,
+    'unfinished': _blocking_line,
+    'ended': _how_answer_ended,
     'clock': _set_use_sim_time,
     'package': _ask_package,
 }

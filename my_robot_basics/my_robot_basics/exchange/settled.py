@@ -26,7 +26,7 @@ def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
     A timer may create one when it first fires. The nodes have existed for at least `lived_sec`:
     a timer whose period is shorter by more than _FIRED_SEC has fired.
     """
-    if any(may_come() for may_come in (_threads, _processes, _tasks, _alarm)):
+    if any(may_come() for may_come in (_has_threads, _has_processes, _has_tasks, _has_alarm)):
         return None
     if 'rclpy' not in sys.modules:
         return []
@@ -40,7 +40,7 @@ def settled_nodes(lived_sec: float = 0.0) -> list[str] | None:
     return [n.get_fully_qualified_name() for n in nodes if not n.get_name().startswith('_')]
 
 
-def _threads() -> bool:
+def _has_threads() -> bool:
     known = {thread.ident for thread in threading.enumerate() if _is_ours(thread)}
     # _current_frames also has the threads that `threading` does not know
     return bool(sys._current_frames().keys() - known)
@@ -52,12 +52,12 @@ def _is_ours(thread: threading.Thread) -> bool:
     return thread is threading.main_thread() or f'{module}'.partition('.')[0] in _OURS
 
 
-def _processes() -> bool:
+def _has_processes() -> bool:
     """Whether processes that were started here still run, also after their parents ended."""
-    return bool(psutil.Process().children(recursive=True)) or any(_in_session())
+    return bool(psutil.Process().children(recursive=True)) or any(_session_pids())
 
 
-def _in_session() -> Iterator[int]:
+def _session_pids() -> Iterator[int]:
     ours = os.getsid(0)
     for pid in psutil.pids():
         try:
@@ -67,7 +67,7 @@ def _in_session() -> Iterator[int]:
             continue
 
 
-def _tasks() -> bool:
+def _has_tasks() -> bool:
     try:
         tasks = asyncio.all_tasks()
     except RuntimeError:  # no event loop runs here
@@ -80,5 +80,5 @@ def _module_of(task: asyncio.Task) -> str:
     return str(frame.f_globals.get('__name__', '')) if frame else ''
 
 
-def _alarm() -> bool:
+def _has_alarm() -> bool:
     return any(signal.getitimer(which)[0] for which in (signal.ITIMER_REAL, signal.ITIMER_PROF))

@@ -11,9 +11,9 @@ from my_robot_basics.exchange import values, wire
 from my_robot_basics.exchange.asking import reply_value, send
 from my_robot_basics.exchange.expected_types import (
     brief,
+    cause_of_wrong_type,
     check_type,
     kind_of,
-    not_always,
     wanted_type,
     what_is_unsupported,
 )
@@ -50,7 +50,7 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     if kind == 'unsupported':
         seen, hint = what_is_unsupported(body, returns)
         wanted = f'`{shown}` to return {wanted_type(returns)}'
-        fail(expected=wanted, seen=seen, hint=hint, cause=not_always(name, returns))
+        fail(expected=wanted, seen=seen, hint=hint, cause=cause_of_wrong_type(name, returns))
     if body is None:
         hint = (
             f'end each branch of `{name}` with `return …` (printing a result does not return it)'
@@ -61,7 +61,9 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
             hint=hint,
             cause=f'`{name}` returns None',
         )
-    check_type(body, returns, what=f'`{shown}` to return', cause=not_always(name, returns))
+    check_type(
+        body, returns, what=f'`{shown}` to return', cause=cause_of_wrong_type(name, returns)
+    )
     return body
 
 

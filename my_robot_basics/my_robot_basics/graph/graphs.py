@@ -14,7 +14,7 @@ from my_robot_basics.graph.watcher import HIDDEN, Watcher
 SETTLE_SEC = 0.4
 """The graph counts as settled when it has not changed for this long."""
 MOST_SETTLE_SEC = 5.0
-"""How long `take` waits for that at most, without the time to read the graph."""
+"""How long `take_snapshot` waits for that at most, without the time to read the graph."""
 MOST_TAKE_SEC = 15.0
 """The same with that time: on a busy machine, or with a large graph, reading takes longer."""
 PUBLISHER_SEC = 10.0
@@ -38,15 +38,15 @@ def graph(*, after_publisher_on: str = '') -> GraphSnapshot:
     with Watcher() as watcher:
         if after_publisher_on:
             wait_for_publisher(watcher, after_publisher_on, timeout_sec=PUBLISHER_SEC)
-        return take(watcher)
+        return take_snapshot(watcher)
 
 
-def take(watcher: Watcher) -> GraphSnapshot:
+def take_snapshot(watcher: Watcher) -> GraphSnapshot:
     """The graph as a watcher sees it, once it has not changed for SETTLE_SEC and knows all names.
 
     After MOST_SETTLE_SEC or MOST_TAKE_SEC, the graph as it is then.
     """
-    last = _look(watcher.node)
+    last = _read_graph(watcher.node)
     since, earlier = watcher.earlier_look
     if last == earlier and not _has_unknown(last) and time.monotonic() - since >= SETTLE_SEC:
         return last
@@ -60,7 +60,7 @@ def take(watcher: Watcher) -> GraphSnapshot:
     ):
         watcher.spin_for(0.05)
         waited += 0.05
-        now = _look(watcher.node)
+        now = _read_graph(watcher.node)
         steady = steady + 0.05 if now == last else 0.0
         last = now
     return last
@@ -74,7 +74,7 @@ def publisher_infos(
     `is_dds`: the name is DDS's, such as 'rq/solve_ikRequest' for the requests of a service.
     """
     found = node.get_publishers_info_by_topic(topic_name, no_mangle=is_dds)
-    return [info for info in found if not _hidden(info)]
+    return [info for info in found if not _is_hidden(info)]
 
 
 def subscription_infos(
@@ -85,7 +85,7 @@ def subscription_infos(
     `is_dds`: the name is DDS's, such as 'rq/solve_ikRequest' for the requests of a service.
     """
     found = node.get_subscriptions_info_by_topic(topic_name, no_mangle=is_dds)
-    return [info for info in found if not _hidden(info)]
+    return [info for info in found if not _is_hidden(info)]
 
 
 def full_name(info: TopicEndpointInfo) -> str:
@@ -131,7 +131,7 @@ def is_settled(watcher: Watcher, node_name: str = '') -> bool:
     are_seen = watcher.spin_until(
         lambda: {*names} <= {*node_names(watcher.node)}, timeout_sec=SEEN_SEC
     )
-    watcher.earlier_look = time.monotonic(), _look(watcher.node)
+    watcher.earlier_look = time.monotonic(), _read_graph(watcher.node)
     return are_seen
 
 
@@ -150,7 +150,7 @@ def is_gone(watcher: Watcher, node_name: str) -> bool:
     return node_name not in living or node_name not in node_names(watcher.node)
 
 
-def _look(node: Node) -> GraphSnapshot:
+def _read_graph(node: Node) -> GraphSnapshot:
     names = set(node_names(node))
     topic_names = [name for name, _ in node.get_topic_names_and_types()]
     return GraphSnapshot(
@@ -173,13 +173,13 @@ def _endpoints(
     topic_names: list[str], look_up: Callable[[str], list[TopicEndpointInfo]]
 ) -> dict[str, tuple[str, ...]]:
     found = {
-        name: tuple(sorted(full_name(info) for info in look_up(name) if not _hidden(info)))
+        name: tuple(sorted(full_name(info) for info in look_up(name) if not _is_hidden(info)))
         for name in topic_names
     }
     return {name: nodes for name, nodes in found.items() if nodes}
 
 
-def _hidden(info: TopicEndpointInfo) -> bool:
+def _is_hidden(info: TopicEndpointInfo) -> bool:
     return info.node_name.startswith(HIDDEN) and info.node_name != UNKNOWN
 
 

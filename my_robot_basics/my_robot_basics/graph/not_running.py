@@ -11,7 +11,7 @@ NOT_RUNNING = (
 
 def why_not_running() -> str:
     """What to do if no node runs: NOT_RUNNING, unless a cell of the notebook has ended it."""
-    ended, by, name = node_troubles.ended()
+    ended, by, name = node_troubles.how_answer_ended()
     if by:
         return (
             f'the node of {theirs(ended)} no longer runs, because `run({theirs(by)})` has started'

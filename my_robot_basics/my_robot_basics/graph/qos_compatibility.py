@@ -6,7 +6,7 @@ from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 
 
-def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str, str]]:
+def incompatible_policies(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str, str]]:
     """Each policy that offers less than requested: its name, and both values in words."""
     gaps = {}
     if (
@@ -34,12 +34,12 @@ def incompatible(offered: QoSProfile, asked: QoSProfile) -> dict[str, tuple[str,
     return gaps
 
 
-def brief(qos_profile: QoSProfile) -> str:
+def qos_text(qos_profile: QoSProfile) -> str:
     """The two policies that the lessons explain, such as 'RELIABLE/VOLATILE'."""
     return f'{qos_profile.reliability.name}/{qos_profile.durability.name}'
 
 
-def leave_out(policies: Iterable[str]) -> str:
+def hint_to_omit(policies: Iterable[str]) -> str:
     """What to try if a subscription requests policies that no publisher offers: one clause."""
     if 'LIVELINESS' in policies:
         return (

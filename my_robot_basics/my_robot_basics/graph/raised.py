@@ -44,7 +44,7 @@ def what_stopped(node_names: Iterable[str]) -> str:
     names = sorted(set(node_names))
     if raised := what_raised(names):
         return raised
-    said = next(filter(None, map(node_troubles.unfinished, names)), '')
+    said = next(filter(None, map(node_troubles.blocking_line, names)), '')
     return f'its callback has not returned ({theirs(said)})' if said else what_ended_a_thread()
 
 

@@ -64,14 +64,14 @@ class ServiceGraph:
         return f'{runs} runs, so look at the {kind} name in {maker}(…) and that the node calls it'
 
 
-def take(node: Node) -> ServiceGraph:
+def take_graph(node: Node) -> ServiceGraph:
     """The services as a node sees them now."""
     names = [name for name, _ in node.get_service_names_and_types()]
     own = [name for name in names if name.rpartition('/')[2] not in OF_EVERY_NODE]
-    return take_ends(node, {name: name for name in own})
+    return take_servers_and_clients(node, {name: name for name in own})
 
 
-def take_ends(node: Node, requests: Mapping[str, str]) -> ServiceGraph:
+def take_servers_and_clients(node: Node, requests: Mapping[str, str]) -> ServiceGraph:
     """The servers and clients of `requests`: names of services or actions to request services.
 
     A service is its own request service; that of an action is send_goal. The DDS endpoints of the

@@ -29,7 +29,7 @@ def why(name: str, *, domains: bool = False) -> None:
         full_name,
         domain_id=classroom.enter(),
         other_domains=domains,
-        raised=troubles.of_service,
+        raised=troubles.last_raised_in_service,
     )
     for diagnosis in found:
         _show(diagnosis)

@@ -20,18 +20,18 @@ class Answer:
 _answer = Answer()
 
 
-def begin(key: str) -> None:
+def watch_answer(key: str) -> None:
     """Look from now on at the node of this key; at none if it is ''."""
     _answer.key, _answer.ended = key, None
 
 
-def restart(key: str) -> None:
+def note_restart(key: str) -> None:
     """Drop what was noted about this node, because it is starting again."""
     if key == _answer.key:
         _answer.ended = None
 
 
-def noted(keys: Iterable[str], how: tuple[str, str] = _STOPPED) -> list[str]:
+def note_end(keys: Iterable[str], how: tuple[str, str] = _STOPPED) -> list[str]:
     """Note that `live` ends these nodes; return them. `how` is as in `Answer.ended`."""
     ending = list(keys)
     if _answer.key and _answer.key in ending:

@@ -23,7 +23,7 @@ def reset(*names: str) -> None:
     """
     runner.shut_down()
     troubles.forget_all()
-    ended.begin('')
+    ended.watch_answer('')
     if classroom.in_grading_room():
         course_nodes.close()
     _started_before.clear()
@@ -57,7 +57,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
     if taken := course_nodes.taken_from(answer):
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
-    ended.begin(answer.__name__)
+    ended.watch_answer(answer.__name__)
     outdated.watch()
     with course_nodes.none_made():
         node = runner.run(answer, *args, **kwargs)

@@ -47,7 +47,7 @@ def show_graph(title: str = '') -> None:
     direction of the messages, mostly from left to right.
     """
     with Watcher() as watcher:
-        nodes = graphs.take(watcher).nodes()
+        nodes = graphs.take_snapshot(watcher).nodes()
         arrows = arrows_of(nodes, endpoints_of(watcher.node))
     text = describe(arrows)
     notebook.show_picture(draw(arrows, title=title), text)

@@ -21,7 +21,7 @@ _last: dict[str, str] = {}
 _times: dict[str, int] = {}
 """How often a node's callbacks have raised."""
 _fields: dict[str, tuple[str, str]] = {}
-"""What `field` returns, by the node's full name."""
+"""What `unpublished_field` returns, by the node's full name."""
 _of_services: dict[tuple[str, str], str] = {}
 """The last exception of a service's callback, by the node's and the service's full names."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
@@ -47,7 +47,7 @@ def remember(node_name: str, error: BaseException) -> None:
         _of_services[node_name, service_name] = told
     # these two last: a check in another thread that sees them asks for the others at once
     _last[node_name] = told
-    _times[node_name] = times(node_name) + 1
+    _times[node_name] = times_raised(node_name) + 1
 
 
 def forget(node_name: str) -> None:
@@ -67,12 +67,12 @@ def forget_all() -> None:
     _of_services.clear()
 
 
-def last(node_name: str) -> str:
+def last_raised(node_name: str) -> str:
     """Return the last exception of the node's callbacks, or ''."""
     return _last.get(node_name, '')
 
 
-def field(node_name: str) -> tuple[str, str]:
+def unpublished_field(node_name: str) -> tuple[str, str]:
     """Return the field that kept the node from publishing, and its type, for its last exception.
 
     If it gave rclpy a wrong object instead of a request or goal: '', and how to make one.
@@ -80,17 +80,17 @@ def field(node_name: str) -> tuple[str, str]:
     return _fields.get(node_name, ('', ''))
 
 
-def times(node_name: str) -> int:
+def times_raised(node_name: str) -> int:
     """Return how often a callback of the node has raised."""
     return _times.get(node_name, 0)
 
 
-def of_service(service_name: str) -> dict[str, str]:
+def last_raised_in_service(service_name: str) -> dict[str, str]:
     """Return the last exception of a service's callback, by the nodes' full names."""
     return {node: what for (node, name), what in _of_services.items() if name == service_name}
 
 
-def unfinished(node_name: str) -> str:
+def blocking_line(node_name: str) -> str:
     """Return the line at which a callback blocks all others of the node, or ''.
 
     It is a callback that is in progress for UNFINISHED_SEC, for which this function waits.

@@ -20,7 +20,9 @@ TEST_RECEIVES = """
 from my_robot_basics.exchange import probe
 probe.receive()
 """
-STUDENT_GOES = 'import sys; probe.silence(); sys.path.append({files!r}); del probe, sys'
+STUDENT_GOES = (
+    'import sys; probe.remove_announcement(); sys.path.append({files!r}); del probe, sys'
+)
 """The student's modules come last in sys.path, and after the probe: else they could replace
 optional modules that libraries try to import. No name of this code stays in the notebook."""
 

@@ -6,7 +6,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from my_robot_basics.doctor import code
 from my_robot_basics.doctor.evidence import Evidence, Finding
-from my_robot_basics.graph.qos_compatibility import incompatible
+from my_robot_basics.graph.qos_compatibility import incompatible_policies
 
 
 def examine(evidence: Evidence) -> Iterator[Finding]:
@@ -16,7 +16,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
             if publisher.type_name != subscription.type_name:
                 continue
             offered, asked = publisher.qos_profile, subscription.qos_profile
-            gaps = incompatible(offered, asked)
+            gaps = incompatible_policies(offered, asked)
             if not gaps:
                 continue
             names = ' and '.join(gaps)
@@ -41,7 +41,7 @@ def examine(evidence: Evidence) -> Iterator[Finding]:
 
 def _compatible_profile(offered: QoSProfile, asked: QoSProfile) -> str:
     """Return a compatible QoSProfile as Python code, as close to the requested one as possible."""
-    gaps = incompatible(offered, asked)
+    gaps = incompatible_policies(offered, asked)
     reliable = asked.reliability == ReliabilityPolicy.RELIABLE and 'RELIABILITY' not in gaps
     parts = ['depth=10', f'reliability=ReliabilityPolicy.{_RELIABILITY[reliable]}']
     if asked.durability == DurabilityPolicy.TRANSIENT_LOCAL and 'DURABILITY' not in gaps:
