@@ -6,7 +6,7 @@ import re
 import nbformat
 import pytest
 from my_robot_basics.doctor import as_html
-from my_robot_basics.drawing.described import described
+from my_robot_basics.drawing.described import png_output
 from my_robot_basics.live import panel
 from nbformat.v4 import new_output
 
@@ -120,10 +120,10 @@ PICTURES = {
 
 @pytest.mark.parametrize(('english', 'chinese'), PICTURES.items())
 def test_the_words_for_a_picture_are_translated_and_its_labels_and_pixels_stay(english, chinese):
-    data, metadata = described(b'pixels', english)
+    data, metadata = png_output(b'pixels', english)
     pixels = data.pop('image/png')
     output = shown(new_output('display_data', data, metadata=metadata))
-    again, about = described(pixels, english, 'zh_CN')  # what a kernel of the edition shows
+    again, about = png_output(pixels, english, 'zh_CN')  # what a kernel of the edition shows
     assert output.data == {k: text for k, text in again.items() if k != 'image/png'}
     assert output.metadata == about
     assert output.data['text/plain'] == chinese

@@ -2,13 +2,13 @@
 
 import base64
 
-from my_robot_basics.drawing.described import described
+from my_robot_basics.drawing.described import png_output
 
 PNG = b'\x89PNG and so on'
 
 
 def test_a_description_is_beside_the_pixels_and_in_the_metadata():
-    bundle, metadata = described(PNG, 'an arm')
+    bundle, metadata = png_output(PNG, 'an arm')
     source = base64.b64encode(PNG).decode()
     assert bundle == {
         'image/png': PNG,
@@ -19,7 +19,7 @@ def test_a_description_is_beside_the_pixels_and_in_the_metadata():
 
 
 def test_a_description_of_several_lines_is_joined_and_its_markup_is_escaped():
-    bundle, metadata = described(PNG, 'saw "1"\nand <b>2</b>')
+    bundle, metadata = png_output(PNG, 'saw "1"\nand <b>2</b>')
     assert metadata['image/png']['alt'] == 'saw "1"; and <b>2</b>'
     assert 'alt="saw &quot;1&quot;; and &lt;b&gt;2&lt;/b&gt;"' in bundle['text/html']
     assert bundle['text/plain'].splitlines() == ['saw "1"', 'and <b>2</b>']

@@ -1,7 +1,7 @@
 """ROS packages that a package imports, but its package.xml does not name."""
 
 import pytest
-from my_robot_basics.live.package_needs import unnamed_needs
+from my_robot_basics.live.package_needs import undeclared_dependencies
 from my_robot_basics.session import package_files
 from package_maker import NODE, PACKAGE, make_package
 
@@ -12,7 +12,7 @@ def needs(tmp_path):
 
     def of(**changes):
         make_package(tmp_path, **changes)
-        return unnamed_needs(PACKAGE, package_files.read(tmp_path / PACKAGE))
+        return undeclared_dependencies(PACKAGE, package_files.read(tmp_path / PACKAGE))
 
     return of
 

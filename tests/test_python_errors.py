@@ -14,7 +14,7 @@ from my_robot_basics.feedback import rclpy_names
 from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import raised
-from my_robot_basics.live.bare_errors import made_with
+from my_robot_basics.live.bare_errors import how_to_make
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.trouble import describe_cell_error
 from nbformat.v4 import new_output
@@ -333,13 +333,13 @@ def test_a_request_or_goal_of_another_type_is_explained_with_its_constructor(run
     client = node.create_client(SolveIK, '/solve_ik')
     arm = ActionClient(node, MoveArm, '/move_arm')
     request = 'SolveIK.Request(target=…)'
-    assert made_with(error_of('client.call_async(5)', client=client)) == request
-    assert made_with(error_of('client.call(5)', client=client)) == request
+    assert how_to_make(error_of('client.call_async(5)', client=client)) == request
+    assert how_to_make(error_of('client.call(5)', client=client)) == request
     goal = 'MoveArm.Goal(position=…, speed=…)'
-    assert made_with(error_of('arm.send_goal_async([1.0, 2.0])', arm=arm)) == goal
-    assert made_with(error_of('client.call_async()', client=client)) == ''
-    assert made_with(error_of('raise TypeError()')) == ''
-    assert made_with(TypeError()) == ''
+    assert how_to_make(error_of('arm.send_goal_async([1.0, 2.0])', arm=arm)) == goal
+    assert how_to_make(error_of('client.call_async()', client=client)) == ''
+    assert how_to_make(error_of('raise TypeError()')) == ''
+    assert how_to_make(TypeError()) == ''
 
 
 @pytest.mark.starts
@@ -361,7 +361,7 @@ def test_feedback_of_another_type_is_explained_with_its_constructor(run):
     client.wait_for_server(timeout_sec=10.0)
     client.send_goal_async(MoveArm.Goal())
     live.wait_until(lambda: bool(found))
-    assert made_with(found[0]) == 'MoveArm.Feedback(position=…, remaining=…)'
+    assert how_to_make(found[0]) == 'MoveArm.Feedback(position=…, remaining=…)'
 
 
 def test_a_check_adds_the_constructor_to_the_exception_of_a_callback(monkeypatch):

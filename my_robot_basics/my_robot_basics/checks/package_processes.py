@@ -8,9 +8,8 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any, NoReturn, Self
 
-from my_robot_basics.checks import polite_end, spinning
+from my_robot_basics.checks import package_words, polite_end, spinning
 from my_robot_basics.checks.doubts import doubt_after
-from my_robot_basics.checks.package_words import has_ended, how, last_words, text_in, why_ended
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean, why_crashed
@@ -53,7 +52,7 @@ class RunningExecutable:
         told = self._ask('start', self.executable, list(self.arguments))
         number = told.get('number')
         if type(number) is not int:
-            problem = text_in(told, 'problem')
+            problem = package_words.text_in(told, 'problem')
             fail(
                 expected=f'{self.executable} of {self.package} to start',
                 seen='no process',
@@ -147,7 +146,9 @@ class RunningExecutable:
     def _expect_code(self, wanted: int, *, hint: str) -> None:
         code, said = self._state()
         wanted_end = f'{self.executable} to end with exit code {wanted}'
-        seen = ', '.join(filter(None, (how(code), last_words(said))))
+        seen = ', '.join(
+            filter(None, (package_words.describe_exit(code), package_words.last_words(said)))
+        )
         cause = f'{self.executable} does not end cleanly'
         expect(code == wanted, expected=wanted_end, seen=seen, hint=hint, cause=cause)
 
@@ -170,8 +171,8 @@ class RunningExecutable:
         code, said = self._state()
         fail(
             expected=expected,
-            seen=has_ended(code, said),
-            hint=why_ended(code, self.package, self.executable),
+            seen=package_words.describe_end(code, said),
+            hint=package_words.why_ended(code, self.package, self.executable),
             cause=f'{self.executable} ends by itself',
         )
 
@@ -193,7 +194,7 @@ class RunningExecutable:
                 hint='look for a kernel that has died, or that is kept busy',
                 cause=f'nothing is known of {self.executable}',
             )
-        return code if type(code) is int else None, text_in(told, 'said')
+        return code if type(code) is int else None, package_words.text_in(told, 'said')
 
     def _ask(self, verb: str, *args: object) -> Mapping[str, Any]:
         return student.ask_package(self.package, verb, *args)

@@ -15,17 +15,18 @@ def text_in(told: Mapping[str, Any], key: str) -> str:
     return text if isinstance(text, str) else ''
 
 
-def how(code: int | None) -> str:
+def describe_exit(code: int | None) -> str:
     """How a program has ended, according to its exit code."""
     if code is None:
         return 'it runs'
     return f'exit code {code}' if code >= 0 else f'ended by {signal_name(-code)}'
 
 
-def has_ended(code: int | None, said: str) -> str:
+def describe_end(code: int | None, said: str) -> str:
     """A clause that says how a program has ended and what it printed last."""
     last = last_words(said)
-    return f'it has ended: {how(code)}, {last}' if last else f'it has ended: {how(code)}'
+    end = describe_exit(code)
+    return f'it has ended: {end}, {last}' if last else f'it has ended: {end}'
 
 
 def last_words(said: str) -> str:

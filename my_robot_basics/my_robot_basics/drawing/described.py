@@ -16,7 +16,7 @@ def gettext_noop(text: str) -> str:
     return text
 
 
-def described(png: bytes, text: str, language: str = ENGLISH) -> tuple[Bundle, dict[str, Any]]:
+def png_output(png: bytes, text: str, language: str = ENGLISH) -> tuple[Bundle, dict[str, Any]]:
     """Return a picture and its alternative text as a notebook's output: data and metadata.
 
     The text is translated into the language if there is a translation. The HTML is for

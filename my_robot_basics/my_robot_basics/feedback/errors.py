@@ -7,7 +7,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from my_robot_basics.drawing.described import described
+from my_robot_basics.drawing.described import png_output
 from my_robot_basics.feedback import hidden
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.session.errors import in_lines
@@ -108,5 +108,5 @@ def show(picture: bytes, *, alt: str) -> None:
     from IPython.display import display
 
     if get_ipython() is not None:
-        bundle, metadata = described(picture, alt)
+        bundle, metadata = png_output(picture, alt)
         display(bundle, metadata=metadata, raw=True)

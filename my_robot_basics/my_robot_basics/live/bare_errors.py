@@ -10,7 +10,7 @@ from rclpy.client import Client
 MOST_FIELDS = 3
 
 
-def made_with(error: BaseException) -> str:
+def how_to_make(error: BaseException) -> str:
     """Return how to make the expected object: 'SolveIK.Request(target=…)'; '' for other errors."""
     if type(error) is not TypeError or error.args or error.__traceback__ is None:
         return ''

@@ -31,7 +31,7 @@ END_SEC = 3.0
 HOW = 'write your own in the answer cell; the functions of two_link_kinematics may be called'
 
 
-def taken_from(answer: type) -> str:
+def course_part_of(answer: type) -> str:
     """Return what a node class takes from the course's nodes, as the end of a sentence; or ''."""
     for base in answer.__mro__:
         if base.__module__ in MODULES:
@@ -72,7 +72,7 @@ def end_programs(processes: Collection[psutil.Process]) -> None:
 
 
 @contextmanager
-def none_made() -> Iterator[None]:
+def refuse_course_nodes() -> Iterator[None]:
     """Refuse to create any of the course's nodes meanwhile."""
     with ExitStack() as stack:
         for NodeClass in _classes():
@@ -80,7 +80,7 @@ def none_made() -> Iterator[None]:
         yield
 
 
-def close() -> None:
+def refuse_course_nodes_for_good() -> None:
     """Refuse from now on to create such a node, derive from it, or use a method: for grading."""
     for NodeClass in _classes():
         refuse = _refusal(NodeClass)

@@ -44,7 +44,7 @@ def start(
     path = prefix_of(package) / 'lib' / package / name
     known = executables_of(package)
     if name not in known:
-        raise NotRunnable(_not_there(package, name, known))
+        raise NotRunnable(_why_not_found(package, name, known))
     while len(_started) >= MOST_STARTED and (ended := _oldest_ended()):
         del _started[ended]
     panel = None if by_check else _panel(f'{package} {name}')
@@ -68,7 +68,7 @@ def environment_of(package: str) -> dict[str, str]:
     prefix = prefix_of(package)
     site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
     added = {'AMENT_PREFIX_PATH': prefix, 'PYTHONPATH': site, 'PATH': prefix / 'bin'}
-    return {name: _first(name, folder) for name, folder in added.items()}
+    return {name: _prepend_to_variable(name, folder) for name, folder in added.items()}
 
 
 def stop_started(*, package: str = '', name: str = '', by_notebook_alone: bool = False) -> None:
@@ -90,25 +90,26 @@ def stop_started(*, package: str = '', name: str = '', by_notebook_alone: bool =
 def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
     """Return how an executable ended, and what is wrong with that; `took` is from Process.stop."""
     code, last = each.process.code, error_in([*each.process.lines])
+    end = _describe_exit(code)
     why = why_crashed(code, at_end=took is not None)
     if took is None:
         if code == 0:
             return 'had ended by itself (exit code 0)'
         if last or why:
-            return f'had ended by itself ({_how(code)}): {why or last}'
-        return f'had ended by itself ({_how(code)})'
+            return f'had ended by itself ({end}): {why or last}'
+        return f'had ended by itself ({end})'
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
         return 'ended cleanly after SIGINT'  # the exit code may be 1: see RACE in endings.py
     if took is signal.SIGINT:
         if why:
-            return f'ended after SIGINT, but not cleanly ({_how(code)}): {why}'
+            return f'ended after SIGINT, but not cleanly ({end}): {why}'
         if last:
             return (
-                f'ended after SIGINT, but not cleanly ({_how(code)}, with {last}): catch '
+                f'ended after SIGINT, but not cleanly ({end}, with {last}): catch '
                 'KeyboardInterrupt and ExternalShutdownException in main'
             )
         return (
-            f'ended after SIGINT, but not cleanly ({_how(code)}): catch KeyboardInterrupt '
+            f'ended after SIGINT, but not cleanly ({end}): catch KeyboardInterrupt '
             'and ExternalShutdownException in main'
         )
     return (
@@ -134,7 +135,7 @@ class ProcessPanel(Panel):
             print(text, flush=True)
 
 
-def _not_there(package: str, name: str, known: Sequence[str]) -> str:
+def _why_not_found(package: str, name: str, known: Sequence[str]) -> str:
     if not prefix_of(package).is_dir():
         return (
             f'expected {package} to be built, saw no build: run the cell with '
@@ -151,11 +152,11 @@ def _oldest_ended() -> int | None:
     return next((n for n, each in _started.items() if each.process.code is not None), None)
 
 
-def _first(name: str, folder: Path) -> str:
+def _prepend_to_variable(name: str, folder: Path) -> str:
     return os.pathsep.join(filter(None, [str(folder), os.environ.get(name, '')]))
 
 
-def _how(code: int | None) -> str:
+def _describe_exit(code: int | None) -> str:
     if code is not None and code < 0:
         return f'by {signal_name(-code)}'
     return f'exit code {code}'

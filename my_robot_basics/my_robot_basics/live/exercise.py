@@ -25,7 +25,7 @@ def reset(*names: str) -> None:
     troubles.forget_all()
     ended.watch_answer('')
     if classroom.in_grading_room():
-        course_nodes.close()
+        course_nodes.refuse_course_nodes_for_good()
     _started_before.clear()
     _started_before.update(psutil.Process().children())
     for name in names:
@@ -55,11 +55,11 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'{wanted}, saw {kind}: begin it with `class {name}(Node):`')
     if answer.__module__ != '__main__':
         raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
-    if taken := course_nodes.taken_from(answer):
+    if taken := course_nodes.course_part_of(answer):
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
     ended.watch_answer(answer.__name__)
     outdated.watch()
-    with course_nodes.none_made():
+    with course_nodes.refuse_course_nodes():
         node = runner.run(answer, *args, **kwargs)
     _refuse_programs()
     if node is None and any(_is_idle(answer, other) for other in nodes_here()):

@@ -73,14 +73,14 @@ def describe(arrows: Arrows) -> str:
     said = [
         f'{topic.name} ({topic.type_name}): '
         + gettext_noop(
-            f'{_listed(senders[topic])} → {_listed(listener.name for listener in arrows[topic])}'
+            f'{_join_names(senders[topic])} → {_join_names(box.name for box in arrows[topic])}'
         )
         for topic in arrows
         if topic.type_name
     ]
     alone = [box.name for box in arrows if not (box.type_name or arrows[box] or senders[box])]
     if alone:
-        said.append(gettext_noop(f'on no topic: {_listed(alone)}'))
+        said.append(gettext_noop(f'on no topic: {_join_names(alone)}'))
     return gettext_noop('graph') + ': ' + ('; '.join(said) or gettext_noop('no node is running'))
 
 
@@ -125,7 +125,7 @@ def _places(arrows: Arrows) -> dict[Box, tuple[int, float]]:
             box: fmean([heights[other] for other in neighbours[box] if other in heights] or [0.0])
             for box in boxes
         }
-        heights.update(_apart(wanted))
+        heights.update(_spread_heights(wanted))
 
     linked = [box for box in arrows if arrows[box] or senders[box]]
     in_columns = [
@@ -141,7 +141,7 @@ def _places(arrows: Arrows) -> dict[Box, tuple[int, float]]:
     return {box: (columns[box], heights[box]) for box in arrows}
 
 
-def _apart(wanted: dict[Box, float]) -> dict[Box, float]:
+def _spread_heights(wanted: dict[Box, float]) -> dict[Box, float]:
     """Return heights close to those wanted at which boxes of one column are a row apart."""
     heights: dict[Box, float] = {}
     for box in sorted(wanted, key=lambda box: (-wanted[box], box)):
@@ -183,5 +183,5 @@ def _without_loops(arrows: Arrows) -> dict[Box, set[Box]]:
     return senders
 
 
-def _listed(names: Iterable[str]) -> str:
+def _join_names(names: Iterable[str]) -> str:
     return ' and '.join(names) or gettext_noop('nobody')

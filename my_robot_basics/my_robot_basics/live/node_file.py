@@ -31,7 +31,7 @@ def write_node(line: str, cell: str) -> None:
     name = line.strip()
     if not (name.endswith('.py') and name.removesuffix('.py').isidentifier()):
         raise NotWritten(f'expected a name such as greeter.py after %%write_node, saw {name!r}')
-    modules = workspace.copy() / workspace.NAME
+    modules = workspace.package_folder() / workspace.NAME
     if not modules.is_dir():
         raise NotWritten('there is no workspace yet: run the cell with make_workspace() first')
     target = modules / name
@@ -44,14 +44,14 @@ def write_node(line: str, cell: str) -> None:
             tell(f'not written: {error}', in_one=False)
         return
     if target.exists() and target.read_text(encoding='utf-8') != text:
-        tell(f'moved    {workspace.shown(_kept(target))}: the file as it was')
+        tell(f'moved    {workspace.ros_ws_path(_copy_to_shelf(target))}: the file as it was')
     target.write_text(text, encoding='utf-8')
-    tell(f'written  {workspace.shown(target)}')
+    tell(f'written  {workspace.ros_ws_path(target)}')
     if text != cell:
         print(f'\n{text}', end='')
 
 
-def _kept(target: Path) -> Path:
+def _copy_to_shelf(target: Path) -> Path:
     shelf = workspace.make_shelf()
     number = 1 + sum(1 for _ in shelf.glob(f'{target.stem}_*.py'))
     return Path(shutil.copy(target, shelf / f'{target.stem}_{number}.py'))
@@ -59,8 +59,8 @@ def _kept(target: Path) -> Path:
 
 def show_workspace() -> None:
     """Print the workspace as a tree: its folders, and the files that are yours."""
-    lines = [f'{workspace.shown(workspace.copy().parents[1])}/']
-    lines += _below(workspace.copy().parents[1], Path(), '')
+    lines = [f'{workspace.ros_ws_path(workspace.package_folder().parents[1])}/']
+    lines += _below(workspace.package_folder().parents[1], Path(), '')
     print('\n'.join(lines))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import rclpy.logging
 
-from my_robot_basics.drawing.described import Bundle, described
+from my_robot_basics.drawing.described import Bundle, png_output
 from my_robot_basics.language.speaking import language_here
 from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord
 from my_robot_basics.live.stdout_tap import StdoutTap
@@ -112,7 +112,7 @@ class Display:
     def _publish(self, bundle: Bundle, *, update: bool) -> None:
         metadata = None
         if 'image/png' in bundle:
-            bundle, metadata = described(
+            bundle, metadata = png_output(
                 bundle['image/png'], bundle['text/plain'], language_here()
             )
         self._shell.display_pub.publish(

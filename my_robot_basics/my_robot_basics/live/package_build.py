@@ -14,7 +14,7 @@ from pathlib import Path
 
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
-from my_robot_basics.live.package_needs import unnamed_needs
+from my_robot_basics.live.package_needs import undeclared_dependencies
 from my_robot_basics.session import classroom, package_files, subreaper
 
 MOST_WORDS = 20_000
@@ -82,7 +82,7 @@ def build(package: str, folder: Path) -> Build:
         return Build(package, None, problem, left_out=files.left_out)
     problem = fault_in_words(package, status, words) if status else ''
     problem = problem or fault_in_install(package, prefix_of(package), files)
-    unnamed = () if problem else unnamed_needs(package, files)
+    unnamed = () if problem else undeclared_dependencies(package, files)
     found = executables_of(package)
     return Build(package, status, problem, words, found, files.left_out, unnamed)
 

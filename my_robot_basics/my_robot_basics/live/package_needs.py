@@ -9,19 +9,19 @@ from my_robot_basics.live.package_faults import NO_PYTHON
 from my_robot_basics.session.package_files import PackageFiles, first_clauses
 
 
-def unnamed_needs(package: str, files: PackageFiles) -> tuple[str, ...]:
+def undeclared_dependencies(package: str, files: PackageFiles) -> tuple[str, ...]:
     """Return a clause with what to add for each such ROS package, in alphabetical order.
 
     The package.xml has to be valid. Only packages that are installed here count as ROS packages.
     """
     from ament_index_python import get_packages_with_prefixes
 
-    named = _named(files.taken['package.xml'])
+    named = _declared_dependencies(files.taken['package.xml'])
     ros_packages = get_packages_with_prefixes().keys() - named - {package}
     importing: dict[str, str] = {}
     for path, file in files.taken.items():
         if path.startswith(f'{package}/') and path.endswith('.py'):
-            for name in _imports(file):
+            for name in _imported_names(file):
                 importing.setdefault(name, path)
     clauses = (
         f'package.xml does not name {name}, which {importing[name]} imports: on a robot, colcon '
@@ -31,7 +31,7 @@ def unnamed_needs(package: str, files: PackageFiles) -> tuple[str, ...]:
     return first_clauses(list(clauses))
 
 
-def _named(manifest: Path) -> set[str]:
+def _declared_dependencies(manifest: Path) -> set[str]:
     from catkin_pkg.package import parse_package_string
 
     parsed = parse_package_string(manifest.read_text(encoding='utf-8'))
@@ -39,7 +39,7 @@ def _named(manifest: Path) -> set[str]:
     return {dependency.name for dependency in chain(*kinds)}
 
 
-def _imports(file: Path) -> Iterator[str]:
+def _imported_names(file: Path) -> Iterator[str]:
     """Yield the first name of each absolute import in a file, also of those in functions."""
     try:
         tree = ast.parse(file.read_bytes())

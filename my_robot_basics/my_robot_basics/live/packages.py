@@ -7,7 +7,7 @@ from typing import Any
 
 from my_robot_basics.live import executables, package_build
 from my_robot_basics.live.package_build import Build
-from my_robot_basics.live.workspace import shown
+from my_robot_basics.live.workspace import ros_ws_path
 from my_robot_basics.ros2 import skeleton
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
@@ -31,7 +31,7 @@ def build_package(name: str) -> None:
     classroom.enter()
     executables.stop_started(package=name)
     _builds.pop(name, None)
-    folder = beside() / name
+    folder = packages_folder() / name
     if folder.is_dir() and not folder.is_symlink():
         built = package_build.build(name, folder)
     else:
@@ -69,7 +69,9 @@ def make_package(name: str, *, node_name: str = '', dependencies: Sequence[str] 
     __tracebackhide__ = True
     _expect_name(name)
     try:
-        made = skeleton.make(beside(), name, node_name=node_name, dependencies=tuple(dependencies))
+        made = skeleton.make(
+            packages_folder(), name, node_name=node_name, dependencies=tuple(dependencies)
+        )
     except FileExistsError:
         raise NotRunnable(
             f'expected no folder {name}/ beside the notebook, saw one: go on with that, or rename '
@@ -79,7 +81,7 @@ def make_package(name: str, *, node_name: str = '', dependencies: Sequence[str] 
     print(*(f'  {path}' for path in made), sep='\n')
 
 
-def beside() -> Path:
+def packages_folder() -> Path:
     """Return the folder of a notebook's packages: its own, or at grading the one of FOLDER."""
     return Path(os.environ.get(FOLDER) or Path.cwd())
 
@@ -126,7 +128,7 @@ def _build_reply(built: Build | None) -> dict[str, Any]:
 def _build_message(built: Build) -> str:
     if built.problem:
         return built.problem
-    where = shown(package_build.prefix_of(built.package))
+    where = ros_ws_path(package_build.prefix_of(built.package))
     known = ', '.join(built.executables)
     return f'built {built.package} in {where}: `ros2 run {built.package}` finds {known}'
 

@@ -29,7 +29,8 @@ def show_qos_matrix(outcomes: Mapping[tuple[str, str], str], *, title: str = '')
     if holes:
         raise ValueError(f'expected an outcome for every pair, saw none for {holes[0]}')
     lines = [
-        f'{offer} → ' + ', '.join(_told(request, outcomes[offer, request]) for request in requests)
+        f'{offer} → '
+        + ', '.join(_describe_outcome(request, outcomes[offer, request]) for request in requests)
         for offer in offers
     ]
     figure = _draw_matrix(outcomes, offers=offers, requests=requests, title=title)
@@ -41,20 +42,20 @@ def show_lost_messages(
 ) -> None:
     """Show, for each subscription, which of the messages 1 to `sent` it received."""
     counts = [
-        f'{name}: ' + gettext_noop(f'{len(_known(numbers, sent))} of {sent}')
+        f'{name}: ' + gettext_noop(f'{len(_received_numbers(numbers, sent))} of {sent}')
         for name, numbers in received.items()
     ]
     figure = _draw_lost(received, sent=sent, title=title)
     notebook.show_picture(png(figure), '\n'.join(filter(None, [title, *counts])))
 
 
-def _told(request: str, outcome: str) -> str:
+def _describe_outcome(request: str, outcome: str) -> str:
     if outcome == 'yes':
         return gettext_noop(f'{request} yes')
     return gettext_noop(f'{request} no ({outcome})')
 
 
-def _known(numbers: Sequence[int], sent: int) -> list[int]:
+def _received_numbers(numbers: Sequence[int], sent: int) -> list[int]:
     return sorted({*numbers} & {*range(1, sent + 1)})
 
 
@@ -73,8 +74,8 @@ def _draw_matrix(
     axes.set_title(title)
     axes.set_xlabel('the subscription requests')
     axes.set_ylabel('the publisher offers')
-    axes.set_xticks([i + 0.5 for i in range(columns)], [_broken(name) for name in requests])
-    axes.set_yticks([i + 0.5 for i in range(rows)], [_broken(name) for name in offers])
+    axes.set_xticks([i + 0.5 for i in range(columns)], [_break_label(name) for name in requests])
+    axes.set_yticks([i + 0.5 for i in range(rows)], [_break_label(name) for name in offers])
     axes.tick_params(length=0)
     for row, offer in enumerate(offers):
         for column, request in enumerate(requests):
@@ -90,7 +91,7 @@ def _draw_matrix(
     return figure
 
 
-def _broken(name: str) -> str:
+def _break_label(name: str) -> str:
     return name.replace(' ', '\n', 1) if len(name) > LONG else name
 
 
@@ -101,7 +102,7 @@ def _draw_lost(received: Mapping[str, Sequence[int]], *, sent: int, title: str) 
     axes = figure.add_subplot(xlim=(0, sent + 1), ylim=(len(received) - 0.5, -0.5))
     labels = []
     for row, (name, numbers) in enumerate(received.items()):
-        known = _known(numbers, sent)
+        known = _received_numbers(numbers, sent)
         lost = [number for number in range(1, sent + 1) if number not in known]
         axes.plot(known, [row] * len(known), '|', color=ARRIVED, ms=16, mew=3, label='arrived')
         axes.plot(lost, [row] * len(lost), 'x', color=LOST, ms=5, label='lost')

@@ -47,7 +47,9 @@ def show_arrivals(
             gaps.set_ylabel('gap (ms)')
             gaps.ticklabel_format(useOffset=False)
     figure.axes[-1].set_xlabel('time since the first one (s)')
-    notebook.show_picture(png(figure), _told(_gaps(label, times) for label, times in rows.items()))
+    notebook.show_picture(
+        png(figure), _describe_timeline(_gaps(label, times) for label, times in rows.items())
+    )
 
 
 def show_deliveries(
@@ -72,7 +74,7 @@ def show_deliveries(
         axes.set(yticks=[1, 0], yticklabels=['sent', 'received'], ylim=(-0.3, 1.3))
     figure.axes[-1].set_xlabel('time since the first message was sent (s)')
     notebook.show_picture(
-        png(figure), _told(_delays(label, each, sent) for label, each in rows.items())
+        png(figure), _describe_timeline(_delays(label, each, sent) for label, each in rows.items())
     )
 
 
@@ -111,5 +113,5 @@ def _panels(heights_inches: Sequence[float], *, title: str) -> tuple:
     return figure, iter(panels[:, 0])
 
 
-def _told(rows: Iterable[str]) -> str:
+def _describe_timeline(rows: Iterable[str]) -> str:
     return gettext_noop('timeline') + ': ' + '; '.join(rows)

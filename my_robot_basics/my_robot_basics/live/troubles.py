@@ -12,7 +12,7 @@ from rclpy.service import Service
 
 from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.exchange.wrong_fields import wrong_field
-from my_robot_basics.live.bare_errors import made_with
+from my_robot_basics.live.bare_errors import how_to_make
 from my_robot_basics.session.errors import without_signatures
 
 UNFINISHED_SEC = 0.5
@@ -42,7 +42,7 @@ def remember(node_name: str, error: BaseException) -> None:
     place = _line((own or frames)[-1]) if frames else ''
     what = without_signatures(what)
     told = f'{what} ({place})' if place else what
-    _fields[node_name] = _unpublished(error) or ('', made_with(error))
+    _fields[node_name] = _unpublished(error) or ('', how_to_make(error))
     if node_name != THREADS and (service_name := _service(error)):
         _of_services[node_name, service_name] = told
     # these two last: a check in another thread that sees them asks for the others at once

@@ -57,12 +57,12 @@ def make_workspace(*, refresh: bool | str = False, interfaces: bool = False) -> 
         )
     workspace = classroom.workspace()
     _write_reference(workspace / 'reference')
-    _make(Copied(PACKAGE, copy(), CONTENTS), refresh in (True, NAME))
+    _make(Copied(PACKAGE, package_folder(), CONTENTS), refresh in (True, NAME))
     if interfaces:
         source, target = PACKAGE.parent / INTERFACES, workspace / 'src' / INTERFACES
         copied = Copied(source, target, INTERFACES_CONTENTS)
         _make(copied, refresh in (True, INTERFACES))
-    tell(f'written  {shown(workspace / "reference")}: files to copy from')
+    tell(f'written  {ros_ws_path(workspace / "reference")}: files to copy from')
     _show_in_file_browser(workspace)
     tell("build it in JupyterLab's terminal or in ./course ros-shell:")
     print(f'           {BUILD}')
@@ -74,9 +74,9 @@ def make_workspace(*, refresh: bool | str = False, interfaces: bool = False) -> 
 def _make(package: Copied, refresh: bool) -> None:
     """Copy a package if it is missing, and print the state of the copy."""
     changes = package.differences()
-    name = shown(package.target)
+    name = ros_ws_path(package.target)
     if refresh and changes:
-        tell(f'moved    {shown(package.move_aside(make_shelf()))}: your files as they were')
+        tell(f'moved    {ros_ws_path(package.move_aside(make_shelf()))}: your files as they were')
     if not package.target.exists():
         package.make()
         tell(f'made     {name}: the package, yours to edit')
@@ -99,7 +99,7 @@ def _about_interfaces(workspace: Path) -> str:
         return sentence
     words = f'the same for {INTERFACES} (about 15 s):'
     if is_built:
-        words = f'{shown(built.prefix)} is built; once more {INTERFACES} (about 15 s):'
+        words = f'{ros_ws_path(built.prefix)} is built; once more {INTERFACES} (about 15 s):'
     return f'{words}\n           {BUILD.replace(NAME, INTERFACES)}'
 
 
@@ -112,7 +112,7 @@ def _show_in_file_browser(workspace: Path) -> None:
             link.symlink_to(os.path.relpath(workspace, folder))
 
 
-def copy() -> Path:
+def package_folder() -> Path:
     """Return the folder of the student's own copy of the package."""
     return classroom.workspace() / 'src' / NAME
 
@@ -133,7 +133,7 @@ def _write_reference(reference: Path) -> None:
     (reference / 'COLCON_IGNORE').touch()  # colcon refuses two packages with the same name
 
 
-def shown(path: Path) -> str:
+def ros_ws_path(path: Path) -> str:
     """Return a path in the workspace that begins with $ROS_WS, for a terminal of the course."""
     return f'$ROS_WS/{path.relative_to(classroom.workspace())}'.removesuffix('/.')
 
