@@ -233,7 +233,7 @@ def look_at_tired(**options):
 
     with spinning(make), Watcher() as watcher:
         recorder = topic('/tired').listen(watcher)
-        return sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
+        return sampling.record_simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
 
 
 @pytest.mark.slow
@@ -311,7 +311,7 @@ def look_at_counter(calls_each):
 
     with spinning(make), Watcher() as watcher:
         recorder = topic('/counted').listen(watcher)
-        return sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
+        return sampling.record_simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
 
 
 @pytest.mark.slow

@@ -69,7 +69,7 @@ def test_a_wall_recording_waits_for_a_node_that_remembers_simulated_time(run, mo
             driven.tick(100_000_000)
         return Inconclusive(sampling.UNEVEN)
 
-    monkeypatch.setattr(sampling, '_sampled', drive_in_vain)
+    monkeypatch.setattr(sampling, '_record_in_steps', drive_in_vain)
     run(adjustable.ReadsInEachTick)
     recording = topic(TOPIC).record()
     assert (recording.clock, len(recording.messages) > 10) == ('wall', True)

@@ -12,7 +12,7 @@ from my_robot_basics.checks.passage import Passage
 from my_robot_basics.checks.pushed_out import FEW, FLOOD, MOST, MOST_GRADED, PushedOut
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
-from my_robot_basics.checks.variety import Sent
+from my_robot_basics.checks.variety import VariedMessage
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 
 SEC = 1_000_000_000
@@ -41,7 +41,9 @@ def passage_through(node, **options):
 
 
 def loses_one_of_two(loses, **options):
-    return passage_through(Node(loses, **options)).loses_one_of_two(Sent(n, '') for n in count())
+    return passage_through(Node(loses, **options)).loses_one_of_two(
+        VariedMessage(n, '') for n in count()
+    )
 
 
 @pytest.fixture(params=[False, True], ids=['free', 'busy'])
@@ -87,7 +89,7 @@ def test_messages_of_other_publishers_received_late_do_not_count_as_invented(
     node = Node(lambda pair: False)
     passage = passage_through(node)
     node.received += [(f'of another {n}', SEC * n) for n in range(8)]
-    assert not passage.loses_one_of_two(Sent(n, '') for n in count())
+    assert not passage.loses_one_of_two(VariedMessage(n, '') for n in count())
     own = [(n, SEC * n) for n in range(4)]
     assert passage.invents(own + [(f'of another {n}', SEC * n) for n in received]) == invents
 
@@ -106,10 +108,10 @@ def test_repeated_messages_from_a_queue_do_not_count_as_invented(monkeypatch, is
     node = Node(lambda pair: False)
     passage = passage_through(node, earlier='first')
     node.received += [('first', SEC * n) for n in range(5)]
-    assert not passage.loses_one_of_two(Sent(n, '') for n in count())
+    assert not passage.loses_one_of_two(VariedMessage(n, '') for n in count())
     if is_timer:
         node.received += [('first', SEC * n) for n in range(5)]
-        assert not passage.loses_after_a_pause(Sent(n, '') for n in count(100))
+        assert not passage.loses_after_a_pause(VariedMessage(n, '') for n in count(100))
     assert passage.invents([(n, SEC * n) for n in range(4)]) == invents
 
 
@@ -141,7 +143,7 @@ def test_a_slightly_late_message_is_not_pushed_out_of_a_queue_of_depth_1(slow_se
     passage = Passage(
         watcher, node, publish=node.publish, what=lambda message: message, others_publish=False
     )
-    faults = passage.carry(Sent(n, '') for n in count())
+    faults = passage.carry(VariedMessage(n, '') for n in count())
     assert len(faults.lost) == lost
     assert faults.is_whole() == (lost == 0)
 
@@ -163,7 +165,7 @@ class NodeOfTwoPublishers(Node):
 
 def carried_beside_another_publisher(loses, overtaking=FEW, **options):
     passage = passage_through(NodeOfTwoPublishers(loses, overtaking), **options)
-    return passage.carry(Sent(n, '') for n in count())
+    return passage.carry(VariedMessage(n, '') for n in count())
 
 
 @pytest.mark.parametrize('others_publish', [False, True])
@@ -206,7 +208,7 @@ def test_a_message_that_was_sent_again_may_be_republished_twice(monkeypatch):
 
     node = LateTwice(lambda number, message: number in (3, 9))
     passage = passage_through(node, others_publish=True)
-    assert passage.carry(Sent(n, '') for n in count()).is_whole()
+    assert passage.carry(VariedMessage(n, '') for n in count()).is_whole()
 
 
 @pytest.mark.parametrize(('lost', 'is_named'), [(2, False), (3, True), (4, True)])
@@ -271,7 +273,7 @@ def test_losses_that_nothing_excuses_are_in_no_doubt(monkeypatch):
     def messages():
         for number in count():
             node.overtaking = FEW if number < 10 else 0
-            yield Sent(number, '')
+            yield VariedMessage(number, '')
 
     faults = passage_through(node, others_publish=True).carry(messages())
     assert (len(faults.lost), faults.doubt) == (4, CheckFailed)

@@ -13,9 +13,9 @@ PNG = b'\x89PNG\r\n\x1a\n'
 @pytest.mark.parametrize('hz', [None, 5.0])
 @pytest.mark.parametrize('times', [every(0.2), every(1.0, 3), []])
 def test_the_picture_of_arrivals_is_a_reproducible_png(clock, hz, times):
-    picture = pictures.arrivals(recording(times, clock=clock), hz=hz)
+    picture = pictures.plot_arrivals(recording(times, clock=clock), hz=hz)
     assert picture.startswith(PNG)
-    assert picture == pictures.arrivals(recording(times, clock=clock), hz=hz)
+    assert picture == pictures.plot_arrivals(recording(times, clock=clock), hz=hz)
 
 
 @pytest.mark.parametrize(
@@ -37,13 +37,13 @@ def test_one_picture_is_shown_with_the_failure_message(monkeypatch, assertion, a
 
 
 def test_an_arm_with_more_joints_has_no_picture():
-    assert pictures.misread([1.0, 2.0, 3.0]) is None
+    assert pictures.draw_misread_arm([1.0, 2.0, 3.0]) is None
 
 
 @pytest.mark.starts
 def test_show_displays_only_in_a_notebook(monkeypatch, capsys):
     InteractiveShell.instance()
-    errors.show(pictures.arrivals(recording(), hz=5.0), alt='five')
+    errors.show(pictures.plot_arrivals(recording(), hz=5.0), alt='five')
     InteractiveShell.clear_instance()
     assert capsys.readouterr().out == 'five\n'
     errors.show(b'no notebook, no picture', alt='')

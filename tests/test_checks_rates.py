@@ -170,7 +170,7 @@ def test_the_period_is_found_despite_a_busy_machine(is_loop, seconds):
         for period_sec, passes in (0.2, True), (0.195, False), (0.205, False):
             times = on_a_busy_machine(period_sec, seconds=seconds, is_loop=is_loop, seed=seed)
             made = recording(times, clock='wall', seconds=seconds)
-            assert abs(periods.meant(rates.times_of(made)) / period_sec - 1.0) < 0.01
+            assert abs(periods.intended_period(rates.times_of(made)) / period_sec - 1.0) < 0.01
             assert rates.has_rate(made, 5.0) is passes
 
 

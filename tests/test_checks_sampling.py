@@ -56,7 +56,7 @@ def test_a_wrong_rate_fails(node, seen):
 @pytest.mark.usefixtures('patient')
 def test_a_timer_that_skips_every_twentieth_message_fails_at_once(monkeypatch):
     monkeypatch.setattr(
-        wall_recording, 'wall', lambda *_, **__: pytest.fail('looked at the wall clock')
+        wall_recording, 'record', lambda *_, **__: pytest.fail('looked at the wall clock')
     )
     with running('leaves_out'), pytest.raises(CheckFailed, match='one message of 20 missing each'):
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
@@ -67,7 +67,7 @@ def test_an_early_end_that_the_proof_does_not_confirm_counts_as_uneven(monkeypat
     ended, proof = recording(every(0.2, 8), seconds=10.0), recording(every(0.2, 8), seconds=1.6)
     monkeypatch.setattr(sampling, 'drive', lambda topic, **_: ended)
     monkeypatch.setattr(sampling, 'prove', lambda topic, seen: proof)
-    assert isinstance(sampling._sampled(None, seconds=10.0, step_sec=0.1), sampling.Uneven)
+    assert isinstance(sampling._record_in_steps(None, seconds=10.0, step_sec=0.1), sampling.Uneven)
 
 
 @pytest.mark.slow
@@ -114,7 +114,7 @@ def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
     monkeypatch.setattr(DrivenTopic, 'tick', note_and_tick)
     with running('bursts'), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
-        found = sampling.simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
+        found = sampling.record_simulated(watcher, recorder, seconds=10.0, step_sec=0.1)
     assert str(found) == sampling.UNEVEN or rates.pattern_of(found).size == 5
     assert min(steps_sec) >= 0.1 / drives.FINE_PARTS
 
@@ -126,7 +126,7 @@ def test_all_messages_of_a_callback_are_taken_in_its_tick(monkeypatch):
 def test_bursts_fail_on_the_simulated_clock_without_a_look_at_the_wall_clock(
     monkeypatch, node, seen
 ):
-    monkeypatch.setattr(wall_recording, 'wall', lambda *args, **options: pytest.fail('looked'))
+    monkeypatch.setattr(wall_recording, 'record', lambda *args, **options: pytest.fail('looked'))
     with running(node):
         recording = topic(TOPIC).record()
         with pytest.raises(CheckFailed, match=rf'saw {seen}, over 6 s \(30 messages\): publ'):
@@ -160,7 +160,7 @@ def test_a_pattern_is_simulated_if_this_is_faster_than_the_wall_clock(
     seen = replace(
         on_wall([1.0 / rate_hz] * 20, late_sec=0.0), clock='simulated', step_sec=step_sec
     )
-    found = sampling._pattern(None, sampling.Uneven(seen), step_sec=0.1)
+    found = sampling._record_pattern(None, sampling.Uneven(seen), step_sec=0.1)
     assert (found is not None, len(driven)) == (is_driven, 2 * is_driven)
 
 
@@ -187,13 +187,13 @@ def test_a_node_that_keeps_publishing_while_the_clock_stands_still_ignores_it(ig
 @pytest.fixture
 def reasons(monkeypatch):
     """Why recordings were made on the wall clock."""
-    reasons, on_wall = [], wall_recording.wall
+    reasons, on_wall = [], wall_recording.record
 
     def wall(*args, why=None, **options):
         reasons.append(str(why))
         return on_wall(*args, why=why, **options)
 
-    monkeypatch.setattr(wall_recording, 'wall', wall)
+    monkeypatch.setattr(wall_recording, 'record', wall)
     return reasons
 
 
@@ -219,7 +219,7 @@ def test_the_second_drive_after_an_inconclusive_one_is_short(monkeypatch):
         asked.append(seconds)
         return Inconclusive(sampling.UNEVEN)
 
-    monkeypatch.setattr(sampling, '_sampled', drive_in_vain)
+    monkeypatch.setattr(sampling, '_record_in_steps', drive_in_vain)
     with running('five_hz'):
         assert topic(TOPIC).record(seconds=10.0).clock == 'wall'
     assert asked == [10.0, 2.0]

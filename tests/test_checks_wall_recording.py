@@ -50,8 +50,8 @@ def test_a_late_machine_records_again_while_there_is_time(
         recorded.append(replace(on_wall(*args, **options), late_sec=late_sec))
         return recorded[-1]
 
-    on_wall = wall_recording.wall
-    monkeypatch.setattr(wall_recording, 'wall', wall)
+    on_wall = wall_recording.record
+    monkeypatch.setattr(wall_recording, 'record', wall)
     monkeypatch.setattr(recording_module, 'SECOND_LOOK_SEC', 1.0)
     with running('unresponsive'):
         recording = topic(TOPIC).record()
@@ -67,7 +67,7 @@ def test_messages_not_yet_taken_by_the_check_are_in_the_recording(monkeypatch):
         recorder = topic(TOPIC).listen(watcher)
         # longer than it is asked for: what was sent within that time has then arrived
         monkeypatch.setattr(watcher, 'spin_for', lambda seconds: time.sleep(seconds + 1.0))
-        recording = wall_recording.wall(watcher, recorder, seconds=2.0)
+        recording = wall_recording.record(watcher, recorder, seconds=2.0)
         recorder.take_all()
     until_sec = recording.start_sec + recording.seconds
     sent = [ns for _, ns in recorder.received if recording.start_sec < ns / 1e9 <= until_sec]
@@ -83,8 +83,8 @@ def test_a_recording_waits_longer_for_a_node_that_seemed_to_ignore_the_clock(mon
     recorder.received, recorder.topic_name = [(None, 0)], TOPIC
     recorder.take_all, recorder.publishers = (lambda: None), (lambda: ('/a',))
     monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: 30.0)
-    wall_recording.wall(watcher, recorder, why=why, timeout_sec=4.0)
-    wall_recording.wall(watcher, recorder, why=NoMessage('none'), timeout_sec=4.0)
+    wall_recording.record(watcher, recorder, why=why, timeout_sec=4.0)
+    wall_recording.record(watcher, recorder, why=NoMessage('none'), timeout_sec=4.0)
     assert waited == [34.0, 4.0]
 
 
@@ -117,7 +117,7 @@ def test_a_recording_does_not_begin_with_a_message_of_the_clock_change(
     end_sec = now.sec + ahead_sec
     monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: max(0.0, end_sec - now.sec))
     monkeypatch.setattr(wall_recording, 'what_raised', lambda names: '')
-    recording = wall_recording.wall(watcher, recorder, why=Inconclusive(sampling.UNEVEN))
+    recording = wall_recording.record(watcher, recorder, why=Inconclusive(sampling.UNEVEN))
     assert len(recording.messages) == count
 
 
@@ -140,7 +140,7 @@ def test_only_a_node_that_published_on_the_simulated_clock_may_remember_it(
 def looked_at(node, *, timeout_sec):
     with running(node), Watcher() as watcher:
         recorder = topic(TOPIC).listen(watcher)
-        return wall_recording.wall(watcher, recorder, seconds=0.1, timeout_sec=timeout_sec)
+        return wall_recording.record(watcher, recorder, seconds=0.1, timeout_sec=timeout_sec)
 
 
 @pytest.mark.starts
@@ -164,7 +164,7 @@ SLOWER = [0.23, 0.231] * 7
 @pytest.mark.parametrize(('gaps_sec', 'goes_on'), [([0.2] * 15, True), (SLOWER, False)])
 def test_a_recording_is_continued_only_if_the_rate_stays_the_same(monkeypatch, gaps_sec, goes_on):
     again, earlier = on_wall(gaps_sec, late_sec=0.0), on_wall([0.2] * 20, late_sec=0.0)
-    monkeypatch.setattr(wall_recording, 'wall', lambda *_, **__: again)
+    monkeypatch.setattr(wall_recording, 'record', lambda *_, **__: again)
     assert wall_recording.goes_on(None, None, earlier) is goes_on
 
 

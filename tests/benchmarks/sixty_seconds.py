@@ -39,7 +39,7 @@ def _minute() -> tuple[float, float, float]:
     with Watcher(shared=True) as watcher:
         recorder = topic(TOPIC).listen(watcher)
         met = time.perf_counter()
-        recording = sampling.simulated(watcher, recorder, seconds=60.0, step_sec=0.1)
+        recording = sampling.record_simulated(watcher, recorder, seconds=60.0, step_sec=0.1)
         driven = time.perf_counter() - met
     used = time.process_time() - cpu
     count = len(recording.messages)

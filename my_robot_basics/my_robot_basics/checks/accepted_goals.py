@@ -7,7 +7,7 @@ from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.feedback.errors import fail
 
 
-def accepted(server: OpenAction, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
+def expect_accepted(server: OpenAction, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
     """Send a goal that has to be accepted; if it is rejected, try the `others` in their order.
 
     Return the goal that was accepted. If none was, raise CheckFailed with the reason why the

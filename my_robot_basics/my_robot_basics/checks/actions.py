@@ -49,7 +49,7 @@ class FollowedClock(Enum):
 
 
 @dataclass
-class Known:
+class KnownServers:
     """What was found out about the servers of an action, so that it is not measured again."""
 
     clocks: dict[str, FollowedClock] = field(default_factory=dict)
@@ -66,7 +66,7 @@ class Action:
     """The absolute name, such as '/move_arm'."""
     type: type
     """Its class, such as `arm_interfaces.action.MoveArm`."""
-    known: Known = field(default_factory=Known, compare=False, repr=False)
+    known: KnownServers = field(default_factory=KnownServers, compare=False, repr=False)
     """What earlier checks have found out about it."""
 
     def send_goal(self, goal: Any, *, cancel_after_sec: float | None = None) -> Outcome:

@@ -3,7 +3,7 @@
 import time
 from typing import Any, NoReturn
 
-from my_robot_basics.checks.accepted_goals import accepted
+from my_robot_basics.checks.accepted_goals import expect_accepted
 from my_robot_basics.checks.action_ends import SentGoal, cancels
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
@@ -172,7 +172,7 @@ def _expect_moves_on(
 ) -> SentGoal:
     """Send the next goal: it is accepted, begins where `former` stopped, and is not stopped."""
     far = max(far_rad(arm.start, position), NEXT_LEAST_RAD)
-    sent = accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
+    sent = expect_accepted(arm.server, goal(position, speed=max(NEXT_SPEED, far / 2.0)))
     wanted_sec = far / sent.goal.speed
     most_sec = MOST_TIMES * wanted_sec + MORE_SEC
     ends = wait_unless_it_crawls(arm, sent, position, seconds=most_sec)

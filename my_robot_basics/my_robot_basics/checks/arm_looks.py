@@ -57,12 +57,12 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
     with action.opened() as server:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
         bring(on_wall, start)
-        clock = _clock(action, on_wall)
+        clock = _followed_clock(action, on_wall)
         if clock == FollowedClock.DRIVEN:
             for longest_sec in math.inf, BUSY_SEC:
                 if longest_sec <= action.known.longest_sec:
                     try:
-                        return _driven(server, body, tuple(start), longest_sec)
+                        return _run_on_driven_clock(server, body, tuple(start), longest_sec)
                     except Inconclusive:
                         action.known.longest_sec = BUSY_SEC
                         bring(on_wall, start)
@@ -74,7 +74,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
             on_wall.settle()
 
 
-def _driven(
+def _run_on_driven_clock(
     server: OpenAction,
     body: Callable[[WatchedArm], T],
     start: tuple[float, ...],
@@ -90,21 +90,21 @@ def _driven(
             arm.settle()
 
 
-def _clock(action: Action, arm: WatchedArm) -> FollowedClock:
+def _followed_clock(action: Action, arm: WatchedArm) -> FollowedClock:
     """Which clock the server follows; measured once for each server."""
     server, name, clocks = arm.server.identity(), arm.server.node_name, action.known.clocks
     if name not in clocks:
-        clocks[name] = _clocks.get(server) or _seen_clock(arm)
+        clocks[name] = _clocks.get(server) or _measure_clock(arm)
     # on a busy machine, any clock may look like the wall clock: the grader measures again
     if clocks[name] != FollowedClock.WALL or is_validating():
         _clocks[server] = clocks[name]
     return clocks[name]
 
 
-def _seen_clock(arm: WatchedArm) -> FollowedClock:
+def _measure_clock(arm: WatchedArm) -> FollowedClock:
     is_free = _answers_while_it_moves(arm)
     arm.settle()
-    clock = _waits_on(arm) if is_free else FollowedClock.WALL
+    clock = _measure_clock_of_move(arm) if is_free else FollowedClock.WALL
     bring(arm, arm.start)
     return clock
 
@@ -135,7 +135,7 @@ def _answers_while_it_moves(arm: WatchedArm) -> bool:
     return is_free
 
 
-def _waits_on(arm: WatchedArm) -> FollowedClock:
+def _measure_clock_of_move(arm: WatchedArm) -> FollowedClock:
     """Hold the robot's clock during a move, then drive it: which clock does the move follow?"""
 
     def waits(driven: WatchedArm) -> FollowedClock:
@@ -154,7 +154,7 @@ def _waits_on(arm: WatchedArm) -> FollowedClock:
 
     try:
         bring(arm, arm.start)
-        return _driven(arm.server, waits, arm.start)
+        return _run_on_driven_clock(arm.server, waits, arm.start)
     except Inconclusive:
         return FollowedClock.WALL
 

@@ -3,7 +3,7 @@
 import math
 
 from arm_interfaces.action import MoveArm
-from my_robot_basics.checks.accepted_goals import accepted
+from my_robot_basics.checks.accepted_goals import expect_accepted
 from my_robot_basics.checks.action_ends import ActionEnds
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
@@ -99,7 +99,7 @@ def expect_one_at_a_time(
             cause='a second goal disturbs the first',
         )
         arm.settle()
-        accepted(server, goal(second, speed=TOO_MANY_SPEED))
+        expect_accepted(server, goal(second, speed=TOO_MANY_SPEED))
         arm.settle()  # else a server without cancellation would still move at the next check
 
     look(action, refuses, start=start)

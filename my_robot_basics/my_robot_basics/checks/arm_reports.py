@@ -153,7 +153,7 @@ class MoveReport:
     def _rate_hz(self, seconds: float) -> float:
         """The rate of the feedback; on the wall clock, the one of the loop without its delays."""
         if not self.arm.time.is_driven:
-            return 1.0 / max(periods.meant(self.times), 1e-9)
+            return 1.0 / max(periods.intended_period(self.times), 1e-9)
         count = len(self.times)
         return min((count - 1) / max(np.ptp(self.times), 1e-9), count / seconds)
 

@@ -44,7 +44,7 @@ def _look(topic: TopicEndpoints, wanted: Wanted, hold_sec: float, earlier: Look 
         sent = watcher.spin_until_free(lambda: bool(recorder.received), free_sec=BEFORE_SEC)
         found = _simulated(watcher, recorder, wanted, hold_sec)
         if isinstance(found, Inconclusive):
-            look = Look(wall_recording.wall(watcher, recorder, why=found), found)
+            look = Look(wall_recording.record(watcher, recorder, why=found), found)
         else:
             look = Look(found, None)
         if not look.recording.messages:
@@ -61,7 +61,7 @@ def _simulated(
 ) -> Recording | Inconclusive:
     if ignoring.is_known(recorder):
         return Inconclusive(wall_recording.IGNORES)
-    found = sampling.simulated(
+    found = sampling.record_simulated(
         watcher,
         recorder,
         seconds=wanted.seconds,
@@ -83,7 +83,7 @@ def _to_look_again(
         start = time.monotonic()
         with Watcher(shared=True, listens=True) as watcher:
             recorder = topic.listen(watcher)
-            again = wall_recording.wall(
+            again = wall_recording.record(
                 watcher, recorder, why=look.why, seconds=seconds, timeout_sec=seconds
             )
         if again.late_sec < LATE_SEC or not late_looks:

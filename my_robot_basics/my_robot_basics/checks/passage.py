@@ -9,7 +9,7 @@ from my_robot_basics.checks.pairs import GAP_SEC, Pairs
 from my_robot_basics.checks.pushed_out import MOST_AGAIN, PushedOut
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
-from my_robot_basics.checks.variety import Sent
+from my_robot_basics.checks.variety import VariedMessage
 from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -55,7 +55,7 @@ class Passage:
         self._publish, self._what = publish, what
         self._earlier = None if earlier is None else what(earlier)
         self._seen = len(recorder.received)
-        self._waiting: list[Sent] = []
+        self._waiting: list[VariedMessage] = []
         self._out: list[tuple[Hashable, int]] = []
         self._copies: list[int] = []
         """How often each message of `_out` came out, less the times that it was sent again."""
@@ -64,7 +64,7 @@ class Passage:
         self._pushed_out, self._slowest_sec = PushedOut(others_publish), 0.0
         self._watch, self._began_ns = Stopwatch(), time.time_ns()
 
-    def carry(self, messages: Iterator[Sent]) -> RelayFaults:
+    def carry(self, messages: Iterator[VariedMessage]) -> RelayFaults:
         """Publish each message once the one before came out or is late, until enough in a row did.
 
         A message that others' messages may have pushed out of a queue is sent again.
@@ -102,7 +102,7 @@ class Passage:
         contents = [(self._what(message), sent_ns) for message, sent_ns in sent]
         return has_invented(self._others, sent=contents, own=self._own, began_ns=self._began_ns)
 
-    def loses_one_of_two(self, messages: Iterator[Sent]) -> bool:
+    def loses_one_of_two(self, messages: Iterator[VariedMessage]) -> bool:
         """Whether mostly only one of two messages in quick succession comes out."""
         pairs = Pairs()
         while (told := pairs.tell()) is None and not self._is_over(LAST_SEC):
@@ -116,7 +116,7 @@ class Passage:
             pairs.count(is_whole=not self._waiting, gap_sec=gap_sec, out_sec=out_sec)
         return pairs.tell_at_last() if told is None else told
 
-    def loses_after_a_pause(self, messages: Iterator[Sent]) -> bool:
+    def loses_after_a_pause(self, messages: Iterator[VariedMessage]) -> bool:
         """Whether the first message after a pause is lost each time."""
         for number in range(PAUSES):
             if number >= FEWEST_LOST and self._is_over(LAST_SEC):
@@ -129,7 +129,7 @@ class Passage:
     def _is_over(self, most_sec: float) -> bool:
         return self._watch.wall_sec() >= most_sec
 
-    def _send(self, sent: Sent) -> bool:
+    def _send(self, sent: VariedMessage) -> bool:
         """Publish a message; return whether it came out in time."""
         self._waiting.append(sent)
         self._let_in(sent)
@@ -140,7 +140,7 @@ class Passage:
             self._slowest_sec = max(self._slowest_sec, watch.wall_sec())
         return is_out
 
-    def _comes_out_later(self, sent: Sent, watch: Stopwatch, others: int) -> bool:
+    def _comes_out_later(self, sent: VariedMessage, watch: Stopwatch, others: int) -> bool:
         """Wait for a message; send it again while messages of others may have pushed it out."""
 
         def is_overtaken() -> bool:
@@ -159,7 +159,7 @@ class Passage:
         return False
 
     def _wait_for(
-        self, sent: Sent, *, free_sec: float, unless: Callable[[], bool] = lambda: False
+        self, sent: VariedMessage, *, free_sec: float, unless: Callable[[], bool] = lambda: False
     ) -> bool:
         """Wait up to `free_sec` of free time for a message; return whether it came out."""
 
@@ -170,7 +170,7 @@ class Passage:
         self._watcher.spin_until_free(lambda: is_out() or unless(), free_sec=free_sec)
         return is_out()
 
-    def _let_in(self, sent: Sent) -> None:
+    def _let_in(self, sent: VariedMessage) -> None:
         self._own.add(self._what(sent.message))
         self._publish(sent.message)
 

@@ -32,7 +32,7 @@ SHORTEST_ROUND = 3
 """The least number of gaps between two missing messages: two alternating gaps are ambiguous."""
 
 
-def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
+def possible_periods(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
     """The least and the greatest period, in seconds, of a timer that explains all of the times.
 
     Each time may be off by `slack_sec`. The least is above the greatest if no period does.
@@ -43,7 +43,7 @@ def spanned(times_sec: np.ndarray, slack_sec: float) -> tuple[float, float]:
     return float(np.max(low)), float(np.min(high))
 
 
-def meant(times_sec: np.ndarray) -> float:
+def intended_period(times_sec: np.ndarray) -> float:
     """The period, in seconds, that a timer or loop was given, even if some messages were late.
 
     A timer keeps to its grid, so its period is the median slope over all pairs of messages, which
@@ -103,7 +103,7 @@ def come_too_often(times_sec: np.ndarray, hz: float, *, seconds: float) -> bool:
     return bool(np.min(counts) > TOO_MANY_TIMES * hz * seconds / PARTS + 1)
 
 
-def left_out(times_sec: np.ndarray, slack_sec: float) -> int:
+def left_out_every(times_sec: np.ndarray, slack_sec: float) -> int:
     """Which message of a timer is missing regularly: 10 for every tenth one; 0 for none.
 
     One period must explain all messages that came, each off by `slack_sec` at most, and the

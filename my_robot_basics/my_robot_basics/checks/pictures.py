@@ -14,7 +14,7 @@ SHOWN_PERIODS = 25
 SEEN, EXPECTED = '#d55e00', '#0072b2'
 
 
-def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
+def plot_arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     """Plot when the messages of a recording arrived; with `hz`, also when they should have."""
     from matplotlib.figure import Figure  # slow to import (1 s), and rarely needed
 
@@ -46,7 +46,7 @@ def arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
     return png(figure)
 
 
-def misread(position: Sequence[float]) -> bytes | None:
+def draw_misread_arm(position: Sequence[float]) -> bytes | None:
     """Draw the two-link arm with these numbers read as radians; None for other arms."""
     if len(position) != 2:
         return None

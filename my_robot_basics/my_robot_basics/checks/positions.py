@@ -53,7 +53,7 @@ def _fail_position(
         )
     elif largest > math.tau and all(_within(each, *degrees) for each in poses):
         seen, hint = f'({shown}), which looks like degrees', 'convert with math.radians(…)'
-        picture = pictures.misread(pose)
+        picture = pictures.draw_misread_arm(pose)
     elif largest > WHOLE_TURN_DEG and all(_within(each, *of_degrees) for each in poses):
         seen = f'({shown}), too large for degrees, too'
         hint = 'degrees() converts the other way: call radians()'

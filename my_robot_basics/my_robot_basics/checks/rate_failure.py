@@ -23,8 +23,8 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
     seen, cause, hint = _explanation(recording, hz, over)
-    picture = pictures.arrivals(recording, hz=hz)
-    doubt = Starved if starved.may_be(recording, hz) else CheckFailed
+    picture = pictures.plot_arrivals(recording, hz=hz)
+    doubt = Starved if starved.may_be_starved(recording, hz) else CheckFailed
     expected = f'{_rounded(hz)} Hz on {recording.topic_name}'
     fail(expected=expected, seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
 
@@ -88,8 +88,8 @@ def _measured_hz(recording: 'Recording', hz: float) -> float:
     low, high = rates.certain_range(recording)
     if low <= high:
         return 2.0 / (low + high)
-    if recording.clock == 'wall' and abs(rates.off_meant(recording, hz)) > rates.TOLERANCE:
-        return 1.0 / periods.meant(rates.times_of(recording))
+    if recording.clock == 'wall' and abs(rates.off_intended(recording, hz)) > rates.TOLERANCE:
+        return 1.0 / periods.intended_period(rates.times_of(recording))
     return recording.rate_hz
 
 

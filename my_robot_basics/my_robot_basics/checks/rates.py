@@ -55,7 +55,7 @@ def is_nearly_even(recording: 'Recording') -> bool:
     """
     slack_sec = max(_slack_sec(recording), UNEVEN_PART / recording.rate_hz)
     times = times_of(recording)
-    low, high = periods.spanned(times, slack_sec)
+    low, high = periods.possible_periods(times, slack_sec)
     return low <= high and not periods.come_by_turns(times, _slack_sec(recording))
 
 
@@ -63,7 +63,7 @@ def leaves_out(recording: 'Recording') -> int:
     """Which message is missing regularly on the robot's clock (10: every tenth one), or 0."""
     if recording.clock != 'simulated':
         return 0
-    return periods.left_out(times_of(recording), _slack_sec(recording))
+    return periods.left_out_every(times_of(recording), _slack_sec(recording))
 
 
 def pattern_of(recording: 'Recording') -> periods.Pattern | None:
@@ -114,7 +114,8 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
     """Whether messages came at `hz`, within ±2 %, and evenly.
 
     On the wall clock, the ±2 % are of the period that the timer or loop was given (see
-    `periods.meant`), and MEAN_TOLERANCE is that of the mean: a busy machine slows a loop down.
+    `periods.intended_period`), and MEAN_TOLERANCE is that of the mean: a busy machine slows a loop
+    down.
     """
     off = abs(recording.rate_hz / hz - 1.0)
     if recording.clock == 'simulated':
@@ -126,7 +127,7 @@ def has_rate(recording: 'Recording', hz: float) -> bool:
         goes_on = not recording.is_over and not leaves_out(recording)
         return is_right and goes_on and not pattern_of(recording)
     least, most = MEAN_TOLERANCE
-    is_meant = abs(off_meant(recording, hz)) <= TOLERANCE
+    is_meant = abs(off_intended(recording, hz)) <= TOLERANCE
     return is_meant and least <= recording.rate_hz / hz - 1.0 <= most and is_steady(recording, hz)
 
 
@@ -149,12 +150,16 @@ def is_steady(recording: 'Recording', hz: float) -> bool:
 def is_doubtful(recording: 'Recording', hz: float) -> bool:
     """Whether a longer recording is needed: the wall clock's period is close to the tolerance."""
     low, high = DOUBTFUL
-    return recording.clock == 'wall' and low < abs(off_meant(recording, hz)) <= high
+    return recording.clock == 'wall' and low < abs(off_intended(recording, hz)) <= high
 
 
-def off_meant(recording: 'Recording', hz: float) -> float:
-    """How far the rate of `periods.meant` is from `hz`: 0.01 if it is 1 % too fast."""
-    return 1.0 / (hz * periods.meant(times_of(recording))) - 1.0 if recording.messages else -1.0
+def off_intended(recording: 'Recording', hz: float) -> float:
+    """How far the rate of `periods.intended_period` is from `hz`: 0.01 if it is 1 % too fast."""
+    return (
+        1.0 / (hz * periods.intended_period(times_of(recording))) - 1.0
+        if recording.messages
+        else -1.0
+    )
 
 
 def certain_range(recording: 'Recording') -> tuple[float, float]:
@@ -187,7 +192,7 @@ def times_of(recording: 'Recording') -> np.ndarray:
 
 
 def _period_range(recording: 'Recording') -> tuple[float, float]:
-    return periods.spanned(times_of(recording), _slack_sec(recording))
+    return periods.possible_periods(times_of(recording), _slack_sec(recording))
 
 
 def _slack_sec(recording: 'Recording') -> float:

@@ -152,7 +152,7 @@ class Recording:
     def plot(self, hz: float | None = None) -> None:
         """Plot when the messages arrived and, with `hz`, when they should have arrived."""
         alt = f'Arrivals of {len(self.messages)} messages on {self.topic_name}'
-        show(pictures.arrivals(self, hz=hz), alt=alt)
+        show(pictures.plot_arrivals(self, hz=hz), alt=alt)
 
     def _look_again(self, hz: float, *, seconds: float) -> 'Recording | None':
         """Another recording on the wall clock, or None if that is impossible or cannot help."""

@@ -14,7 +14,7 @@ from my_robot_basics.checks.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_endpoints import TIMEOUT_SEC, RelayEndpoints
 from my_robot_basics.checks.relay_faults import RelayFaults, what_differs
-from my_robot_basics.checks.variety import filled, varied
+from my_robot_basics.checks.variety import vary_messages, with_filled_fields
 from my_robot_basics.feedback.errors import CheckFailed, fail
 from my_robot_basics.graph import familiar
 from my_robot_basics.graph.watcher import Watcher
@@ -62,7 +62,7 @@ class Relay:
         of `enough.TIMES` in a row (fewer if that takes long) must come out before the next one,
         and so must one after a pause and two right after each other. Raises CheckFailed.
         """
-        make_message = filled(make_message)
+        make_message = with_filled_fields(make_message)
         with Watcher(shared=True) as watcher:
             endpoints = RelayEndpoints(self.source, self.to)
             first = make_message()
@@ -81,7 +81,7 @@ class Relay:
         any other. The node's subscription must request TRANSIENT_LOCAL. What the last participant
         publishes afterwards must come out, too. Raises CheckFailed.
         """
-        make_message = filled(make_message)
+        make_message = with_filled_fields(make_message)
         with Watcher(shared=True) as watcher:
             endpoints = RelayEndpoints(self.source, self.to)
             recorder = endpoints.listen(watcher, type(make_message()))
@@ -124,7 +124,7 @@ class Relay:
             others_publish=source_recorder.has_other_publishers(recorder),
             earlier=earlier,
         )
-        messages = varied(make_message)
+        messages = vary_messages(make_message)
         if not (carried := passage.carry(messages)).is_whole():
             fault, hint = carried.fault()
             self._fail(fault, raised.why(watcher) or hint, carried.doubt)

@@ -4,8 +4,8 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from my_robot_basics.checks.message_text import message_text
 from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.checks.shown import shown
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph.watcher import Watcher
 
@@ -15,12 +15,12 @@ OWED_SEC = 0.5
 """How long to wait for an outstanding request or message of a node, in s of free time."""
 
 
-def of_none(_message: Any, _response: Any) -> bool:
+def made_of_none(_message: Any, _response: Any) -> bool:
     """Return False: no message is made from any response."""
     return False
 
 
-def wait_for_owed(watcher: Watcher, requests: Sequence[Any], most: int) -> None:
+def wait_for_requests(watcher: Watcher, requests: Sequence[Any], most: int) -> None:
     """Wait for `most` requests, one for each published message; for each OWED_SEC at most.
 
     The last may be late: a client may keep a repeated message until the first one is answered.
@@ -31,7 +31,7 @@ def wait_for_owed(watcher: Watcher, requests: Sequence[Any], most: int) -> None:
         watcher.spin_until_free(lambda: len(requests) > before, free_sec=OWED_SEC)  # noqa: B023
 
 
-class Made:
+class MadeMessages:
     """The messages on a topic since `begin`, matched with the responses of a server."""
 
     def __init__(self, watcher: Watcher, recorder: Recorder, sent: Sequence[Any]) -> None:
@@ -72,7 +72,7 @@ class Made:
         if others := self.others(made_of):
             fail(
                 expected=f'one message on {topic_name} for each response, and no other',
-                seen=shown(others[0]),
+                seen=message_text(others[0]),
                 hint=hint(others[0]),
                 cause=f'a message on {topic_name} that should not be',
             )

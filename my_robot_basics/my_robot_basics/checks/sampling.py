@@ -30,11 +30,12 @@ that remembers when it published last is silent later until the wall clock has c
 PATTERN_SEC = 6.0
 """Long enough to show a pattern: alternating gaps, or several messages at once each second."""
 PATTERN_STEP_SEC, STEPS_APART = 0.01, 4
-"""With steps below FINER_BELOW_SEC, `_pattern` records only if they are at least PATTERN_STEP_SEC
-and messages at least STEPS_APART steps apart: otherwise, the wall clock is as quick."""
+"""With steps below FINER_BELOW_SEC, `_record_pattern` records only if they are at least
+PATTERN_STEP_SEC and messages at least STEPS_APART steps apart: otherwise, the wall clock is as
+quick."""
 
 
-def simulated(
+def record_simulated(
     watcher: Watcher,
     recorder: Recorder,
     *,
@@ -52,14 +53,14 @@ def simulated(
         with SimulatedClock(watcher, needed=set(recorder.publishers())) as clock:
             topic = DrivenTopic(watcher, recorder, clock, hold_sec=hold_sec)
             try:
-                found = _sampled(topic, seconds=seconds, step_sec=step_sec)
+                found = _record_in_steps(topic, seconds=seconds, step_sec=step_sec)
             except TooSlow:
                 topic.expect_follows()
                 raise
             if isinstance(found, Inconclusive) or rates.leaves_out(found):
                 topic.expect_follows()
             if isinstance(found, Inconclusive):
-                return _patient(topic, found, seconds=seconds, step_sec=step_sec)
+                return _record_patiently(topic, found, seconds=seconds, step_sec=step_sec)
             return found
     except TooSlow as why:
         return why if watch.is_busy() else Inconclusive(str(why))
@@ -76,7 +77,7 @@ class Uneven(Inconclusive):
         self.recording = recording
 
 
-def _patient(
+def _record_patiently(
     topic: DrivenTopic, first: Inconclusive, *, seconds: float, step_sec: float
 ) -> Recording | Inconclusive:
     """Record again and wait for threads after each tick, after a recording without a result.
@@ -85,15 +86,17 @@ def _patient(
     have to wait until the wall clock has caught up with this one.
     """
     topic.wait_for_threads()
-    if isinstance(first, Uneven) and (shown := _pattern(topic, first, step_sec=step_sec)):
+    if isinstance(first, Uneven) and (shown := _record_pattern(topic, first, step_sec=step_sec)):
         return shown
-    found = _sampled(topic, seconds=SECONDS_LEAST, step_sec=step_sec)
+    found = _record_in_steps(topic, seconds=SECONDS_LEAST, step_sec=step_sec)
     if isinstance(found, Inconclusive) or seconds <= SECONDS_LEAST:
         return found
-    return _sampled(topic, seconds=min(seconds, SECONDS_ENOUGH), step_sec=step_sec)
+    return _record_in_steps(topic, seconds=min(seconds, SECONDS_ENOUGH), step_sec=step_sec)
 
 
-def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording | Inconclusive:
+def _record_in_steps(
+    topic: DrivenTopic, *, seconds: float, step_sec: float
+) -> Recording | Inconclusive:
     for part in CLOSER:
         recording = drive(
             topic, seconds=max(seconds * part, SECONDS_LEAST), step_sec=step_sec * part
@@ -101,7 +104,7 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
         if rates.leaves_out(recording):
             return recording
         if recording.is_over or not rates.is_even(recording):
-            return Uneven(recording)  # perhaps a thread was late: see `_patient`
+            return Uneven(recording)  # perhaps a thread was late: see `_record_patiently`
         proof = prove(topic, recording)
         if proof is None:
             topic.expect_follows()  # beside the timer, a thread may publish on the wall clock
@@ -112,7 +115,7 @@ def _sampled(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recordin
     return Inconclusive(COUNTS)
 
 
-def _pattern(topic: DrivenTopic, first: Uneven, *, step_sec: float) -> Recording | None:
+def _record_pattern(topic: DrivenTopic, first: Uneven, *, step_sec: float) -> Recording | None:
     """A recording of a pattern that no timer makes, with a proof in finer steps, or None.
 
     None if the first recording has no pattern, or if recording on the wall clock is as quick.

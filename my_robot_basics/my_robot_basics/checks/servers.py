@@ -10,10 +10,10 @@ from rclpy.publisher import Publisher
 from my_robot_basics.checks import heartbeat
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.holding_server import HoldingServer
+from my_robot_basics.checks.message_text import message_text
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
-from my_robot_basics.checks.responses import Made, MadeOf, of_none, wait_for_owed
-from my_robot_basics.checks.shown import shown
+from my_robot_basics.checks.responses import MadeMessages, MadeOf, made_of_none, wait_for_requests
 from my_robot_basics.checks.sole_server import expect_no_other, wait_until_known
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.waiting_clients import WaitingClient
@@ -70,7 +70,7 @@ class Server(HoldingServer):
         self.asked_on = asked_on
         self._watcher, self._answers, self._beats = watcher, answers, beats
         self._raised = CallbackErrors({*answers.publishers(), *beats.publishers()})
-        self.made = Made(watcher, answers, self.sent)
+        self.made = MadeMessages(watcher, answers, self.sent)
         """The messages on `to`, matched with the responses."""
         self.published: list[Any] = []
         """All messages on `asked_on`; each should lead to a request."""
@@ -88,7 +88,7 @@ class Server(HoldingServer):
 
     def wait_for_repeated(self) -> None:
         """Wait for outstanding requests: without a server, they would never be answered."""
-        wait_for_owed(self._watcher, self.requests, len(self.published))
+        wait_for_requests(self._watcher, self.requests, len(self.published))
 
     def stop(self) -> None:
         """Destroy the server; return when the student's node has had time to notice."""
@@ -120,7 +120,7 @@ class Server(HoldingServer):
             hint = self._client().why_not_asked(asked_on=self.asked_on, was_away=was_away)
         fail(
             expected=f'a request to {self.name} for the message on {self.asked_on}',
-            seen=shown(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
+            seen=message_text(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
             hint=hint,
             cause=f'{self.name} is {"asked for something else" if others else "not asked"}',
         )
@@ -145,13 +145,13 @@ class Server(HoldingServer):
         others, wrong = received(), cause or f'a wrong message on {self._answers.topic_name}'
         fail(
             expected=f'{expected} on {self._answers.topic_name}',
-            seen=shown(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
+            seen=message_text(others[-1]) if others else f'none in {TIMEOUT_SEC:g} s',
             hint=hint(others[-1]) if others else self._client().why_not_published(),
             cause=wrong if others else f'{self.name} has answered, and nothing is published',
         )
 
-    def expect_nothing(self, *, hint: Hint, made_of: MadeOf = of_none) -> None:
-        """In QUIET_SEC, nothing comes on `to` that is not made from a response: see `Made`.
+    def expect_nothing(self, *, hint: Hint, made_of: MadeOf = made_of_none) -> None:
+        """In QUIET_SEC, no message on `to` that is not made from a response: see `MadeMessages`.
 
         Raises CheckFailed.
         """
@@ -160,7 +160,7 @@ class Server(HoldingServer):
         expect(
             not others,
             expected=f'no message on {self._answers.topic_name}',
-            seen=shown(others[-1]) if others else '',
+            seen=message_text(others[-1]) if others else '',
             hint=hint(others[-1]) if others else '',
             cause=f'a message on {self._answers.topic_name} that should not be',
         )

@@ -50,7 +50,7 @@ def started_node(
     arguments = ['--ros-args', *(word for pair in options for word in pair)]
     domain_id, context = classroom.enter(), Context()
     try:
-        with _met_by_nobody():
+        with _discovery_off():
             rclpy.init(
                 args=arguments,
                 context=context,
@@ -83,6 +83,6 @@ def started_node(
         context.shutdown()
 
 
-def _met_by_nobody() -> AbstractContextManager[None]:
+def _discovery_off() -> AbstractContextManager[None]:
     """Participants created inside this context neither discover others nor are discovered."""
     return set_meanwhile('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')

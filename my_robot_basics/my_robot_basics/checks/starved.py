@@ -29,7 +29,7 @@ NEAR_LEAST = 0.75
 its clock every 10 ms may publish every 60 ms instead of 50."""
 
 
-def may_be(recording: 'Recording', hz: float) -> bool:
+def may_be_starved(recording: 'Recording', hz: float) -> bool:
     """Whether a node with the rate `hz` may produce this recording on a busy machine.
 
     A busy machine makes messages late, each by a different time, but not more frequent. So it

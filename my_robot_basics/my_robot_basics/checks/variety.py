@@ -23,29 +23,29 @@ UNMEASURED = 'velocity', 'effort'
 
 
 @dataclass(frozen=True)
-class Sent:
+class VariedMessage:
     """A message, and its kind in words, which reveal none of its numbers."""
 
     message: Any
     kind: str
 
 
-def varied(make_message: Callable[[], Any]) -> Iterator[Sent]:
+def vary_messages(make_message: Callable[[], Any]) -> Iterator[VariedMessage]:
     """Yield endless messages of all kinds, made from those of `make_message`."""
     order = random.Random(SHUFFLED)
     while True:
         for kind in order.sample(BLOCK, len(BLOCK)):
             if kind == AGAIN:
                 message = make_message()
-                yield Sent(message, PLAIN)
-                yield Sent(message, AGAIN)
+                yield VariedMessage(message, PLAIN)
+                yield VariedMessage(message, AGAIN)
             else:
                 made = make_message()
-                message = changed(made, kind)
-                yield Sent(message, PLAIN if message == made else kind)
+                message = changed_copy(made, kind)
+                yield VariedMessage(message, PLAIN if message == made else kind)
 
 
-def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
+def with_filled_fields(make_message: Callable[[], Any]) -> Callable[[], Any]:
     """A function that fills in stamp, frame, velocities and efforts in `make_message`'s messages.
 
     Stamps are random and in the past, and frames are not the usual base_link: so a relayed message
@@ -67,7 +67,7 @@ def filled(make_message: Callable[[], Any]) -> Callable[[], Any]:
     return make_filled
 
 
-def changed(message: Any, kind: str) -> Any:
+def changed_copy(message: Any, kind: str) -> Any:
     """A copy of the message, changed to that kind.
 
     ZERO also empties texts, BARE the fields that a sensor may leave empty, UNSTAMPED the header.

@@ -28,7 +28,7 @@ publishes forty times has ended by then, and its silence is longer than a timer'
 IGNORES = 'the node ignores the clock'
 
 
-def wall(
+def record(
     watcher: Watcher,
     recorder: Recorder,
     *,
@@ -96,7 +96,7 @@ def remembers_sec(why: Inconclusive | None) -> float:
 
 def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
     """Whether messages still come as often and as evenly as in an earlier recording."""
-    again = wall(watcher, recorder, seconds=GOES_ON_SEC, timeout_sec=GOES_ON_SEC)
+    again = record(watcher, recorder, seconds=GOES_ON_SEC, timeout_sec=GOES_ON_SEC)
     return again.publishers == earlier.publishers and rates.has_rate(again, earlier.rate_hz)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rclpy.qos import ReliabilityPolicy
 
 from arm_interfaces.action import MoveArm
-from my_robot_basics.checks.accepted_goals import accepted, ends_too_soon
+from my_robot_basics.checks.accepted_goals import ends_too_soon, expect_accepted
 from my_robot_basics.checks.action_ends import TERMINAL, SentGoal
 from my_robot_basics.checks.open_action import OpenAction
 from my_robot_basics.checks.robot_time import DrivenTime, WallTime
@@ -74,8 +74,8 @@ class WatchedArm:
         return goal(position, speed=max(speed, far_rad(self.start, position) / longest_sec))
 
     def send(self, wanted: MoveArm.Goal, *others: MoveArm.Goal) -> SentGoal:
-        """Send a goal that must be accepted, see `accepted`. Raises CheckFailed, Inconclusive."""
-        sent = accepted(self.server, wanted, *others)
+        """Send a goal, see `expect_accepted`. Raises CheckFailed, Inconclusive."""
+        sent = expect_accepted(self.server, wanted, *others)
         if isinstance(self.time, DrivenTime):
             stamp = sent.answer.result().stamp
             self.time.expect_shown(stamp.sec * 10**9 + stamp.nanosec)

@@ -8,6 +8,6 @@ from my_robot_basics.checks import joints
 from my_robot_basics.feedback.errors import shorten
 
 
-def shown(message: Any) -> str:
+def message_text(message: Any) -> str:
     """The message in one line; of a JointState only the joints, in the form of `joints.shown`."""
     return shorten(joints.shown(message) if isinstance(message, JointState) else message)
