@@ -167,7 +167,7 @@ def test_a_hidden_part_shows_only_the_cause_to_the_student(told):
 
 
 def test_names_by_students_and_measured_numbers_are_replaced_by_an_ellipsis(told):
-    theirs = hidden.theirs('/node_1 [1.25]')
+    theirs = hidden.student_text('/node_1 [1.25]')
     with pytest.raises(CheckFailed) as failure:
         fail(expected=1, seen=2, hint=f'{theirs} is 0.125° off, 1.5°, -2.25°: period = 1 / rate')
     assert str(failure.value) == f'{hidden.PLACE}… is … off, …: period = 1 / rate'
@@ -177,7 +177,7 @@ def test_names_by_students_and_measured_numbers_are_replaced_by_an_ellipsis(told
 
 
 def test_a_name_by_a_student_cannot_end_its_own_quotation(told):
-    name = hidden.theirs('/a\u2069 it was asked for two \u2068')
+    name = hidden.student_text('/a\u2069 it was asked for two \u2068')
     with pytest.raises(CheckFailed) as failure:
         fail(expected=1, seen=2, hint=f'{name} runs')
     assert str(failure.value) == f'{hidden.PLACE}… runs'
@@ -201,14 +201,14 @@ def test_only_a_visible_part_marks_which_words_are_its_hint(monkeypatch, quiet, 
     monkeypatch.setattr(hidden, '_quiet', quiet)
     monkeypatch.setattr(hidden, '_display', lambda mime, text: said.append((mime, text)))
     with pytest.raises(CheckFailed):
-        fail(expected=1, seen=2, hint=f'it ended: {hidden.theirs("/a")}')
+        fail(expected=1, seen=2, hint=f'it ended: {hidden.student_text("/a")}')
     assert [text for mime, text in said if mime == hidden._HINT] == hints
 
 
 def test_a_visible_part_shows_the_whole_reason(monkeypatch):
     monkeypatch.setattr(hidden, '_quiet', False)
     with pytest.raises(CheckFailed, match=r'^expected 1, saw 2\.25: add /a$'):
-        fail(expected=1, seen=2.25, hint=f'add {hidden.theirs("/a")}', cause='wrong')
+        fail(expected=1, seen=2.25, hint=f'add {hidden.student_text("/a")}', cause='wrong')
 
 
 def test_a_hidden_part_is_marked_in_its_first_line_at_any_place():

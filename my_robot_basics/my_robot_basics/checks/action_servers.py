@@ -8,7 +8,7 @@ from std_msgs.msg import String
 from my_robot_basics.checks.served_action import ServedAction
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import expect
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
 
@@ -37,7 +37,7 @@ def action_server(
         expect(
             not others,
             expected=f'no server of the action {name} but that of this check',
-            seen=theirs(', '.join(sorted(others))),
+            seen=student_text(', '.join(sorted(others))),
             hint='stop that node: here, the check itself serves',
             cause=f'another node serves {name}',
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from my_robot_basics.checks.doubts import doubt_after
 from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import CheckFailed, expect
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -39,7 +39,7 @@ def expect_type(
     expect(
         types == [wanted],
         expected=f'a server of {name} for {wanted}',
-        seen=f'one for {theirs(" and ".join(types))}',
+        seen=f'one for {student_text(" and ".join(types))}',
         hint=f'compare the type in {maker}(…)',
         cause=f'{name} has another type',
     )

@@ -5,7 +5,7 @@ from collections.abc import Collection
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange.values import type_name
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
 
@@ -37,7 +37,7 @@ def why_no_goal(
         return ends.why_none(name, maker='ActionClient')
     types = {each for found in clients.values() for each in found}
     if type_name(type_) not in types:
-        asks_for = theirs(' and '.join(sorted(types)))
+        asks_for = student_text(' and '.join(sorted(types)))
         return f'it sends goals of {asks_for}, so compare the type in ActionClient(…)'
     hint = (
         f'call send_goal_async(goal) for each message on {asked_on}, when it arrives, also while '

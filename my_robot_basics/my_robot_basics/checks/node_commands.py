@@ -13,7 +13,7 @@ from my_robot_basics.checks.started_node import StartedNode, started_node
 from my_robot_basics.checks.topics import topic
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.ros2 import command_line
@@ -42,7 +42,7 @@ def node_command(name: str, node_name: str) -> 'NodeCommand':
     except command_line.BadCommandLine as error:
         fail(
             expected=f'`{name}` to be one command line that starts {_EXECUTABLE}',
-            seen=theirs(shorten(error.seen)),
+            seen=student_text(shorten(error.seen)),
             hint=error.hint,
             cause=f'`{name}` is not a command line',
         )
@@ -76,14 +76,16 @@ class NodeCommand:
         expect(
             self.node_name in publishers,
             expected=f'{self.node_name} to publish on {topic_name}',
-            seen=f'it publishes on {theirs(shorten(", ".join(own)))}' if own else 'it does not',
+            seen=f'it publishes on {student_text(shorten(", ".join(own)))}'
+            if own
+            else 'it does not',
             hint=remap_hints.for_a_topic(self.line, self.node_name, instead_of),
             cause=f'{self.node_name} does not publish on {topic_name}',
         )
         expect(
             len(publishers) == 1,
             expected=f'one publisher on {topic_name}',
-            seen=theirs(shorten(', '.join(publishers))),
+            seen=student_text(shorten(', '.join(publishers))),
             hint='give each node a topic of its own',
             cause=f'several nodes publish on {topic_name}',
         )
@@ -99,7 +101,7 @@ class NodeCommand:
         expect(
             started is not None and started.name == self.node_name,
             expected=f'{self.node_name} to be the node of the command line',
-            seen=f'the node {theirs(started.name)}' if started else 'rcl refuses a rule',
+            seen=f'the node {student_text(started.name)}' if started else 'rcl refuses a rule',
             hint=remap_hints.for_a_name(self.line, self.node_name),
             cause=f'the command line does not start {self.node_name}',
         )
@@ -107,7 +109,7 @@ class NodeCommand:
         expect(
             seen == topic_name,
             expected=f'the command line to make {topic_name} of {instead_of}',
-            seen=theirs(seen),
+            seen=student_text(seen),
             hint=remap_hints.for_a_topic(self.line, self.node_name, instead_of),
             cause='the command line brings another topic',
         )
@@ -132,7 +134,7 @@ class NodeCommand:
         expect(
             count > 0,
             expected=f'the node {self.node_name}',
-            seen=theirs(shorten(', '.join(names))) or 'no node',
+            seen=student_text(shorten(', '.join(names))) or 'no node',
             hint=remap_hints.for_a_name(self.line, self.node_name),
             cause=f'there is no node {self.node_name}',
         )
@@ -150,7 +152,7 @@ class NodeCommand:
         expect(
             seen == value,
             expected=f'{name} = {value} of {self.node_name}',
-            seen=theirs(shorten(repr(seen))),
+            seen=student_text(shorten(repr(seen))),
             hint=_in_the_file(name, self.node_name)
             if self.line.options(*OPTIONS_OF_FILES)
             else _in_the_line(name, value),
@@ -160,7 +162,9 @@ class NodeCommand:
         expect(
             started is not None and (started.has_file or started.parameter == value),
             expected=f'{name} = {value} in the command line of {self.node_name}',
-            seen=theirs(shorten(repr(started.parameter))) if started else 'rcl refuses a rule',
+            seen=student_text(shorten(repr(started.parameter)))
+            if started
+            else 'rcl refuses a rule',
             hint=_in_the_line(name, value),
             cause=f'the command line gives {name} another value',
         )

@@ -1,7 +1,7 @@
 """The name of the student's node: launch files and other nodes depend on it."""
 
 from my_robot_basics.feedback.errors import expect
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.graphs import node_names
 from my_robot_basics.graph.watcher import Watcher
 
@@ -23,7 +23,7 @@ def expect_node(name: str) -> None:
         expect(
             watcher.spin_until_free(runs, free_sec=NAME_SEC),
             expected=f'a node named {name}',
-            seen=theirs(', '.join(sorted({*node_names(watcher.node)}))) or 'none',
+            seen=student_text(', '.join(sorted({*node_names(watcher.node)}))) or 'none',
             hint=f"write `super().__init__('{name}')`, with this name",
             cause='the node has another name',
         )

@@ -17,7 +17,7 @@ from my_robot_basics.checks.parameter_services import nodes_with_services
 from my_robot_basics.checks.server_log import ServerLog
 from my_robot_basics.checks.services import answers_parameters, wait_for_all
 from my_robot_basics.feedback.errors import expect, fail
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
 
@@ -86,7 +86,7 @@ class OpenAction:
         expect(
             count <= 1,  # count servers, not names: two nodes may have the same name
             expected=f'one server of the action {self.name}',
-            seen=f'{count} ({theirs(names)})',
+            seen=f'{count} ({student_text(names)})',
             hint='stop the other node: nobody knows which one moves the arm'
             if ',' in names
             else 'make the ActionServer once, in __init__, and start the node once',
@@ -187,10 +187,10 @@ class OpenAction:
             return BLOCKED
         if answers_parameters(self.watcher, self.node_name):
             return (
-                f'{theirs(self.node_name)} runs, and a callback of the action has not returned: '
-                'see what it waits for'
+                f'{student_text(self.node_name)} runs, and a callback of the action has not '
+                'returned: see what it waits for'
             )
         return (
-            f'{theirs(self.node_name)} answers nothing at all, so see that it spins, and that no '
-            'callback waits'
+            f'{student_text(self.node_name)} answers nothing at all, so see that it spins, and '
+            'that no callback waits'
         )

@@ -14,7 +14,7 @@ from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange import student
 from my_robot_basics.exchange.endings import is_clean, why_crashed
 from my_robot_basics.feedback.errors import Starved, expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -56,7 +56,7 @@ class RunningExecutable:
             fail(
                 expected=f'{self.executable} of {self.package} to start',
                 seen='no process',
-                hint=theirs(shorten(problem, 400)) or f"run build_package('{self.package}')",
+                hint=student_text(shorten(problem, 400)) or f"run build_package('{self.package}')",
                 cause=f'{self.executable} could not be started',
             )
         self._number = number
@@ -85,7 +85,7 @@ class RunningExecutable:
                 self._fail_ended(wanted)
             fail(
                 expected=wanted,
-                seen=theirs(shorten(', '.join(names))) or 'no node',
+                seen=student_text(shorten(', '.join(names))) or 'no node',
                 hint="look at super().__init__('…') of its class, and at what main does before",
                 cause=f'there is no node {node_name}',
                 doubt=doubt,

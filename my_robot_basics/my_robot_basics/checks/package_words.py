@@ -5,7 +5,7 @@ from typing import Any
 
 from my_robot_basics.exchange.endings import error_in, signal_name, why_crashed
 from my_robot_basics.feedback.errors import shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.feedback.python_errors import hint_for_exception
 
 
@@ -33,7 +33,7 @@ def last_words(said: str) -> str:
     """The error in a program's output, or its last line; '' if there was no output."""
     lines = [line for line in said.splitlines() if line.strip()]
     last = error_in(lines) or next(reversed(lines), '')
-    return f'{theirs(shorten(last))}{hint_for_exception(last)}' if last else ''
+    return f'{student_text(shorten(last))}{hint_for_exception(last)}' if last else ''
 
 
 def why_ended(code: int | None, package: str, executable: str) -> str:

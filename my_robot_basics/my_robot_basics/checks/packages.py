@@ -8,7 +8,7 @@ from my_robot_basics.checks.package_processes import RunningExecutable
 from my_robot_basics.checks.package_words import text_in
 from my_robot_basics.exchange import student
 from my_robot_basics.feedback.errors import fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 
 MOST_REASON = 400
 """How many characters of an error to show: enough for a path, a line of Python, and a hint."""
@@ -47,7 +47,7 @@ class Package:
             fail(
                 expected=f'{self.name} to be built, and its executables to be found',
                 seen=_how_it_went(status),
-                hint=theirs(shorten(problem, MOST_REASON)) or 'read what colcon prints',
+                hint=student_text(shorten(problem, MOST_REASON)) or 'read what colcon prints',
                 cause=f'{self.name} is not built as it is',
             )
         listed = told.get('executables')
@@ -55,7 +55,7 @@ class Package:
         if missing := [each for each in executables if each not in there]:
             fail(
                 expected=f'the executables {", ".join(executables)} in {self.name}',
-                seen=theirs(shorten(', '.join(there))) or 'none',
+                seen=student_text(shorten(', '.join(there))) or 'none',
                 hint=f'name {", ".join(missing)} in entry_points of setup.py',
                 cause=f'{self.name} has no executable {", ".join(missing)}',
             )

@@ -8,7 +8,7 @@ from rcl_interfaces.msg import SetParametersResult
 
 from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 
 _NO_RESULT = 'Callback returned an invalid type'
 """rclpy's reason if a callback does not return a SetParametersResult."""
@@ -36,7 +36,7 @@ def expect_all_refused(
     expect(
         value == kept_hz,
         expected=f'{name} = {kept_hz:g}, as before',
-        seen=theirs(shorten(repr(value))),
+        seen=student_text(shorten(repr(value))),
         hint='change nothing when you refuse a value',
         cause=f'{name} is changed by a value that was refused',
     )
@@ -54,7 +54,7 @@ def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
         _expect_yes_where_nothing_changes(name, same)
         fail(
             expected='use_sim_time, another parameter, to be set',
-            seen=f'it refused: {theirs(shorten(result.reason))}',
+            seen=f'it refused: {student_text(shorten(result.reason))}',
             hint='your callback gets each parameter that is set: check only those whose name is '
             f"'{name}'",
             cause='your callback refuses other parameters',
@@ -149,7 +149,7 @@ def fail_refused(name: str, value: float, result: SetParametersResult) -> NoRetu
         hint = 'nobody can set a read-only parameter: declare it without read_only=True'
     fail(
         expected=f'{name} = {value!r} to be set',
-        seen=f'it refused: {theirs(shorten(result.reason))}',
+        seen=f'it refused: {student_text(shorten(result.reason))}',
         hint=hint,
         cause=f'{name} is not a double' if is_type else 'a value within the limits is refused',
     )

@@ -17,7 +17,7 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.services import wait_for_all
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 
@@ -45,7 +45,7 @@ def node_parameters(node_name: str) -> 'NodeParameters':
             others = ', '.join(sorted(set(graphs.node_names(watcher.node))))
             fail(
                 expected=f'the node {node_name}',
-                seen=theirs(shorten(others)) or 'no node',
+                seen=student_text(shorten(others)) or 'no node',
                 hint="run the cell that starts it, and compare its name in super().__init__('…')",
                 cause=f'there is no node {node_name}',
             )
@@ -69,7 +69,7 @@ class NodeParameters:
         expect(
             len(values) == 1 and kinds <= {kind.value for kind in Parameter.Type},
             expected=f'one value of {name} from {self.node_name}/get_parameters',
-            seen=f'{len(values):,} of the types {theirs(shorten(sorted(kinds)))}',
+            seen=f'{len(values):,} of the types {student_text(shorten(sorted(kinds)))}',
             hint=_LEAVE_SERVICES,
             cause=f'{self.node_name}/get_parameters does not answer as rclpy does',
         )
@@ -81,7 +81,7 @@ class NodeParameters:
         expect(
             isinstance(value, int | float) and not isinstance(value, bool),
             expected=f'{name} to be a number',
-            seen=theirs(shorten(repr(value))),
+            seen=student_text(shorten(repr(value))),
             hint='declare it with a number as its default, and change its type nowhere',
             cause=f'{name} is not a number',
         )
@@ -125,7 +125,7 @@ class NodeParameters:
         own = sorted(each for each in names if each not in _OF_EVERY_NODE)
         fail(
             expected=f'the parameter {name} of {self.node_name}',
-            seen=theirs(shorten(', '.join(own))) or 'no parameter of its own',
+            seen=student_text(shorten(', '.join(own))) or 'no parameter of its own',
             hint=f"declare it in the constructor: self.declare_parameter('{name}', …)",
             cause=f'{name} is not declared',
         )

@@ -10,7 +10,7 @@ from my_robot_basics.checks.packages import RunningExecutable
 from my_robot_basics.checks.player_servers import WORDS
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 
@@ -80,7 +80,7 @@ class PlayerReport:
         expect(
             not said,
             expected=f'no message on {TOPIC} before the last target is done',
-            seen=f"'{theirs(shorten(said[0]))}'" if said else '',
+            seen=f"'{student_text(shorten(said[0]))}'" if said else '',
             hint='publish one report, when the result of the last goal is there',
             cause='the report comes too soon',
         )
@@ -92,7 +92,7 @@ class PlayerReport:
         if seen != [*words]:
             fail(
                 expected=f"'{' '.join(words)}' on {TOPIC}",
-                seen=f"'{theirs(shorten(said))}'",
+                seen=f"'{student_text(shorten(said))}'",
                 hint=_why_wrong(seen, words),
                 cause='the report says something else',
             )
@@ -115,7 +115,7 @@ class PlayerReport:
         infos = graphs.publisher_infos(self._watcher.node, TOPIC)
         types = sorted({info.topic_type for info in infos})
         if types and types != [TYPE]:
-            return f'use {TYPE} there, and not {theirs(" and ".join(types))}'
+            return f'use {TYPE} there, and not {student_text(" and ".join(types))}'
         if any(i.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL for i in infos):
             return 'give the publisher the durability TRANSIENT_LOCAL, as in lesson 6'
         if any(i.qos_profile.reliability != ReliabilityPolicy.RELIABLE for i in infos):

@@ -12,7 +12,7 @@ from my_robot_basics.checks.rate_failure import TOO_FAST_TIMES
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topics import topic
 from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 
 RECORD_SEC = 4.0
 HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
@@ -48,7 +48,7 @@ class RateParameter:
         expect(
             isinstance(value, int | float) and not isinstance(value, bool) and value == rate_hz,
             expected=f'{self.name} = {rate_hz}',
-            seen=theirs(shorten(repr(value))),
+            seen=student_text(shorten(repr(value))),
             hint=f"declare it with its default: self.declare_parameter('{self.name}', {rate_hz}); "
             'if somebody has set it since, run the node again',
             cause=f'another default of {self.name}',
@@ -69,7 +69,7 @@ class RateParameter:
         expect(
             value == tried[-1],
             expected=f'{self.name} = {tried[-1]:g}, which the node has accepted',
-            seen=theirs(shorten(repr(value))),
+            seen=student_text(shorten(repr(value))),
             hint='accept the value as it is, or refuse it',
             cause=f'{self.name} has another value than the one that was set',
         )

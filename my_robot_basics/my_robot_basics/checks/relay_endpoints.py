@@ -18,7 +18,7 @@ from my_robot_basics.checks.topic_endpoints import ABSENT_SEC
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import expect, fail
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.qos_compatibility import hint_to_omit, incompatible_policies, qos_text
 from my_robot_basics.graph.raised import what_raised, what_stopped
@@ -181,7 +181,7 @@ class RelayEndpoints:
             fail(
                 expected=f'a publisher on {self.to}',
                 seen='none',
-                hint=f'{theirs(", ".join(listeners))} subscribes to {self.source} and has no'
+                hint=f'{student_text(", ".join(listeners))} subscribes to {self.source} and has no'
                 ' publisher yet, so create it in __init__: it has to be there before the first'
                 ' message comes',
             )

@@ -13,7 +13,7 @@ from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionS
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.watcher import Watcher
 
 REPLY_SEC = 4.0
@@ -126,15 +126,15 @@ class ServedAction(ScriptedActionServer):
             expect(
                 len(words) == 1 or len(self._outcomes.received) <= self.count_over(),
                 expected=f"one outcome of a goal, '{word}', on {topic_name}",
-                seen=theirs(shorten(words)),
+                seen=student_text(shorten(words)),
                 hint='publish one word for each goal: that for the status of its result',
                 cause='several outcomes of one goal are published',
             )
             return
-        others = new()
+        others, none = new(), f'none in {REPLY_SEC:g} s'
         fail(
             expected=f"'{word}' on {topic_name}",
-            seen=f"'{theirs(shorten(others[-1]))}'" if others else f'none in {REPLY_SEC:g} s',
+            seen=f"'{student_text(shorten(others[-1]))}'" if others else none,
             hint=hint(others[-1]) if others else self._why_silent(hint('')),
             cause='another outcome is published' if others else 'no outcome is published',
         )
@@ -152,7 +152,7 @@ class ServedAction(ScriptedActionServer):
         expect(
             not others or len(self._outcomes.received) <= self.count_over(),
             expected=f'no outcome while {while_}',
-            seen=f"'{theirs(shorten(others[-1]))}'" if others else '',
+            seen=f"'{student_text(shorten(others[-1]))}'" if others else '',
             hint='publish the outcome when the result is there: its status tells how it ended',
             cause='an outcome is published too soon',
         )

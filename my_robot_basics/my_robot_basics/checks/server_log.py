@@ -43,7 +43,7 @@ class ServerLog:
         if not said:
             return ''
         said = said.removeprefix(_RAISED)
-        why = hidden.theirs(shorten(said, 100))
+        why = hidden.student_text(shorten(said, 100))
         raised = f'the execute callback raised an exception ({why})'
         raised += hint_for_exception(said)
         # rclpy catches what this callback raises: its spin goes on, as it does for no other

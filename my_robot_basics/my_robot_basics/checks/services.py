@@ -12,7 +12,7 @@ from my_robot_basics.checks.awaited_servers import SERVER_SEC, expect_type, wait
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import expect, fail
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import familiar, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
@@ -92,7 +92,7 @@ class Service:
         expect(
             count == 1,
             expected=f'one server of {self.name}',
-            seen=f'{count} ({theirs(", ".join(sorted(found)))})',
+            seen=f'{count} ({student_text(", ".join(sorted(found)))})',
             hint='stop the other node: nobody knows whose answer arrives'
             if len(found) > 1
             else 'call create_service once, in __init__, and start the node once',
@@ -125,17 +125,17 @@ class Service:
             return why
         if line := node_troubles.blocking_line(server):
             return (
-                f'its callback has not returned ({theirs(line)}), so see what it waits for: no '
-                'answer is delivered to its node while it waits'
+                f'its callback has not returned ({student_text(line)}), so see what it waits for: '
+                'no answer is delivered to its node while it waits'
             )
         if not answers_parameters(watcher, server):
             return (
-                f'{theirs(server)} answers nothing at all, so see that it spins, and that its '
-                'callback ends with `return response`, raises nothing, and waits for nothing'
+                f'{student_text(server)} answers nothing at all, so see that it spins, and that '
+                'its callback ends with `return response`, raises nothing, and waits for nothing'
             )
         return (
-            f'{theirs(server)} runs, and the callback of this service has not returned: see what '
-            'it waits for'
+            f'{student_text(server)} runs, and the callback of this service has not returned: see '
+            'what it waits for'
         )
 
 

@@ -2,7 +2,7 @@
 
 from my_robot_basics.exchange.asking import wait_for_turn
 from my_robot_basics.feedback.errors import expect
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
 
@@ -22,7 +22,7 @@ def expect_no_other(watcher: Watcher, name: str, *, own: int) -> None:
         is_alone,
         expected=f'no server of {name} but that of this check',
         # `services.take_graph` leaves out nodes whose names begin with _
-        seen=theirs(', '.join(known)) if known else 'one more',
+        seen=student_text(', '.join(known)) if known else 'one more',
         hint='stop that node: here, the check itself answers',
         cause=f'another node serves {name}',
     )

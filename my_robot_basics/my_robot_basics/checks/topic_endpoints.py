@@ -8,7 +8,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.exchange import student, values
 from my_robot_basics.feedback.errors import fail
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import Watcher
@@ -129,6 +129,7 @@ class TopicEndpoints:
     def _fail_no_subscription(self, watcher: Watcher, type_: type, *, timeout_sec: float) -> None:
         hint = graphs.take_snapshot(watcher).why_no_subscription(self.name)
         if infos := graphs.subscription_infos(watcher.node, self.name):
-            hint = f'one is there for {theirs(infos[0].topic_type)}, so compare the message type'
+            type_name = student_text(infos[0].topic_type)
+            hint = f'one is there for {type_name}, so compare the message type'
         seen = graphs.none_in(timeout_sec)
         fail(expected=f'a subscription on {self.name} for {type_.__name__}', seen=seen, hint=hint)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange.values import type_name
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
 
@@ -60,7 +60,7 @@ class WaitingClient:
         if not clients:
             return ends.why_none(self.name, maker='create_client')
         if type_name(self.type_) not in types:
-            asks_for = theirs(' and '.join(sorted(types)))
+            asks_for = student_text(' and '.join(sorted(types)))
             return f'it asks for {asks_for}, so compare the type in create_client(…)'
         if not self.goes_on():
             return waits_for_server(self.name)

@@ -34,7 +34,9 @@ def call(name: str, *args: object, returns: type | tuple[type, ...] | None = Non
     other type fails the check; a bool is not an int, an int is accepted as a float. Raises
     CheckFailed if there is no such function, or it raises, returns None, or takes over 10 s.
     """
-    shown = hidden.theirs(shorten(f'{name}({", ".join(brief(argument) for argument in args)})'))
+    shown = hidden.student_text(
+        shorten(f'{name}({", ".join(brief(argument) for argument in args)})')
+    )
     interactions.note()
     kind, body = _ask(wire.request(op='call', name=name, args=args), shown)
     if kind == 'missing':

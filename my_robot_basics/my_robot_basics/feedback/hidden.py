@@ -91,7 +91,7 @@ def note_inputs() -> None:
         _display(_MARK, _INPUTS)
 
 
-def theirs(text: object) -> str:
+def student_text(text: object) -> str:
     """Mark a text that the student's code made; in quiet mode, reasons leave it out."""
     said = without_marks(str(text))  # a name received over DDS may contain any character
     return f'{_OPEN}{said}{_CLOSE}' if _quiet else said
@@ -101,12 +101,12 @@ def student_exception(said: str) -> str:
     """Mark an exception's text like "ValueError: …", except the name of a builtin exception."""
     kind, _, message = said.partition(':')
     if not isinstance(getattr(builtins, kind, None), type):
-        return theirs(said)
-    return f'{kind}: {theirs(message.strip())}' if message else kind
+        return student_text(said)
+    return f'{kind}: {student_text(message.strip())}' if message else kind
 
 
 def without_marks(text: str) -> str:
-    """Return a sentence without the marks of `theirs`, for those who may read all of it."""
+    """Return a sentence without the marks of `student_text`, for those who may read all of it."""
     return text.replace(_OPEN, '').replace(_CLOSE, '')
 
 

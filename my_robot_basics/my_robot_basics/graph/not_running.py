@@ -1,7 +1,7 @@
 """Why there is no node at all: a clause that begins with what is missing."""
 
 from my_robot_basics.exchange import node_troubles
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 
 NOT_RUNNING = (
     'the node is not running, so run the cell that starts it and read its output; a node whose'
@@ -14,14 +14,14 @@ def why_not_running() -> str:
     ended, by, name = node_troubles.how_answer_ended()
     if by:
         return (
-            f'the node of {theirs(ended)} no longer runs, because `run({theirs(by)})` has started'
-            f' another node of the name {theirs(name)} and ended the first one, so derive'
-            " your class from Node itself, and give it, in super().__init__('…'), a name that no"
-            ' other node has'
+            f'the node of {student_text(ended)} no longer runs, because `run({student_text(by)})`'
+            f' has started another node of the name {student_text(name)} and ended the first one,'
+            " so derive your class from Node itself, and give it, in super().__init__('…'), a name"
+            ' that no other node has'
         )
     if ended:
         return (
-            f'the node of {theirs(ended)} no longer runs, because a cell below has stopped it with'
-            ' stop(…), so delete that line'
+            f'the node of {student_text(ended)} no longer runs, because a cell below has stopped'
+            ' it with stop(…), so delete that line'
         )
     return NOT_RUNNING

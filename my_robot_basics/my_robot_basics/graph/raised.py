@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 
 from my_robot_basics.exchange import node_troubles, wire
-from my_robot_basics.feedback.hidden import student_exception, theirs
+from my_robot_basics.feedback.hidden import student_exception, student_text
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 
 _GETS_TOO_LITTLE = re.compile(r'\(\) missing \d+ required positional arguments?: ([^(]*)$')
@@ -24,16 +24,16 @@ def what_raised(node_names: Iterable[str]) -> str:
     if said.endswith('object is not callable') and not hint_for_exception(said):
         why += ', so give a method by its name, without parentheses'
     if found := _GETS_TOO_LITTLE.search(said):
-        return why + _why_too_little(theirs(found[1]))
+        return why + _why_too_little(student_text(found[1]))
     field, type_name = node_troubles.unpublished_field(name)
     if _NO_STAMP.search(said):
         why += ', so make a stamp of the time with .to_msg()'
         return why
     if field:
-        where, kind = theirs(field), theirs(type_name)
+        where, kind = student_text(field), student_text(type_name)
         why += f', so give `{where}` a value of the type `{kind}`'
     elif type_name:
-        why += f', so what you give it has to be made with `{theirs(type_name)}`'
+        why += f', so what you give it has to be made with `{student_text(type_name)}`'
     elif 'bad argument type for built-in operation' in said:
         why += ', so a field of the message holds a value of another type'
     return with_hint(why)
@@ -45,7 +45,9 @@ def what_stopped(node_names: Iterable[str]) -> str:
     if raised := what_raised(names):
         return raised
     said = next(filter(None, map(node_troubles.blocking_line, names)), '')
-    return f'its callback has not returned ({theirs(said)})' if said else what_ended_a_thread()
+    return (
+        f'its callback has not returned ({student_text(said)})' if said else what_ended_a_thread()
+    )
 
 
 def what_ended_a_thread() -> str:

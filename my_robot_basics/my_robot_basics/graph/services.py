@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.graphs import (
     UNKNOWN,
     full_name,
@@ -52,15 +52,15 @@ class ServiceGraph:
             find, mistaken_maker = subscription_infos, 'create_subscription'
         if mistaken := sorted({full_name(info) for info in find(self.node, name)}):
             return (
-                f'{theirs(", ".join(mistaken))} has a topic of this name, and no {kind}: '
+                f'{student_text(", ".join(mistaken))} has a topic of this name, and no {kind}: '
                 f'call {maker}(…) in place of {mistaken_maker}(…)'
             )
         if near := similar(name, [each for each in ends if each != name]):
-            uses = theirs(f'{", ".join(ends[near])} uses {near}')
+            uses = student_text(f'{", ".join(ends[near])} uses {near}')
             if any(near == f'{node.rpartition("/")[0]}{name}' for node in ends[near]):
                 return f"{uses}: a name without a leading / is relative to its node's namespace"
             return f'{uses}, so compare the spelling'
-        runs = theirs(', '.join(self.node_names))
+        runs = student_text(', '.join(self.node_names))
         return f'{runs} runs, so look at the {kind} name in {maker}(…) and that the node calls it'
 
 

@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from my_robot_basics.feedback.hidden import theirs
+from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.not_running import why_not_running
 from my_robot_basics.graph.raised import what_stopped
 
@@ -62,7 +62,7 @@ class GraphSnapshot:
     def why_no_message(self, topic_name: str) -> str:
         """What to try when nothing arrives on a topic: one clause."""
         if senders := self.publishers(topic_name):
-            who = theirs(', '.join(dict.fromkeys(senders)))
+            who = student_text(', '.join(dict.fromkeys(senders)))
             if why := what_stopped(senders):
                 return f'{who} has a publisher there and sends nothing, because {why}'
             return (
@@ -92,26 +92,26 @@ class GraphSnapshot:
         # but it may be, if its publisher and its subscription are swapped
         if mixed := sorted({*names.get(near or '', others if not runs else ())} & {*others}):
             return (
-                f'{theirs(", ".join(mixed))} is at the other end of this topic, so check the'
+                f'{student_text(", ".join(mixed))} is at the other end of this topic, so check the'
                 f' name in {maker}(…); if another node is missing, run the cell that starts it'
             )
         if not runs:
             return why_not_running()
         if near:
-            uses = theirs(f'{", ".join(names[near])} uses {near}')
+            uses = student_text(f'{", ".join(names[near])} uses {near}')
             if near in {name.rpartition('/')[0] + topic_name for name in names[near]}:
                 return f"{uses}: a name without a leading / is relative to its node's namespace"
             if near in {name + topic_name for name in names[near]}:
                 return f"{uses}: a name with ~ begins with its node's own name"
             return f'{uses}, so compare the spelling'
         if why := what_stopped(runs):
-            return f'{theirs(", ".join(runs))} runs, and {why}; fix that first'
+            return f'{student_text(", ".join(runs))} runs, and {why}; fix that first'
         look = f'look at the topic name in {maker}(…) and that the node calls it'
         if len(runs) == 1:
-            return f'{theirs(runs[0])} runs, so {look}'
+            return f'{student_text(runs[0])} runs, so {look}'
         return (
-            f'{theirs(", ".join(runs))} run, so if yours is among them, {look}; if it is not, run'
-            ' the cell that starts it and read what it says'
+            f'{student_text(", ".join(runs))} run, so if yours is among them, {look}; if it is'
+            ' not, run the cell that starts it and read what it says'
         )
 
 

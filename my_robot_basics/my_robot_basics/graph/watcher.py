@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from my_robot_basics.feedback.errors import fail, shorten
-from my_robot_basics.feedback.hidden import is_in_test_room, theirs
+from my_robot_basics.feedback.hidden import is_in_test_room, student_text
 from my_robot_basics.graph.cell_context import context_of_cell, new_context
 from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.graph.snapshot import GraphSnapshot
@@ -100,7 +100,7 @@ class Watcher:
         if refused:
             fail(
                 expected='names on the graph that ROS allows',
-                seen=theirs(shorten(repr(refused))),
+                seen=student_text(shorten(repr(refused))),
                 hint=BY_RCLPY,
             )
 
