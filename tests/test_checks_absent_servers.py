@@ -37,7 +37,7 @@ class Server:
             create_client=lambda *_: Client(self), destroy_client=lambda client: None
         )
 
-    def who_answers(self):
+    def answering_nodes(self):
         return {'/client'}
 
     def publish(self, message):

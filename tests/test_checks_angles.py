@@ -13,7 +13,7 @@ WANTED = (23.4, -67.8, -35.92, 67.8)
     [(23.41, True), (23.4 - 360.0, True), (383.4, True), (23.42, False), (-23.4, False)],
 )
 def test_angles_are_compared_up_to_whole_turns(number, is_near):
-    assert angles.near(23.4, number) is is_near
+    assert angles.is_near(23.4, number) is is_near
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ import time
 import pytest
 from action_msgs.msg import GoalStatus
 from my_robot_basics.graph.cell_context import new_context
+from my_robot_basics.graph.ignored_callback_group import IgnoredCallbackGroup
 from my_robot_basics.graph.lean_executor import LeanExecutor
-from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from rcl_interfaces.srv import GetParameters
@@ -89,8 +89,8 @@ def test_a_service_callback_may_await_a_future(watcher):
     assert watcher.spin_until(asked.done, timeout_sec=10.0)
 
 
-def test_a_client_in_an_unheeded_callback_group_gets_no_response(watcher):
-    asked = ask(watcher, lambda _, response: response, callback_group=Unheeded())
+def test_a_client_in_an_ignored_callback_group_gets_no_response(watcher):
+    asked = ask(watcher, lambda _, response: response, callback_group=IgnoredCallbackGroup())
     assert not watcher.spin_until(asked.done, timeout_sec=0.3)
 
 

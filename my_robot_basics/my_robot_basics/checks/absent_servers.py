@@ -35,7 +35,7 @@ def publish_in_vain(server: ServedAction, message: Any) -> None:
     node = server.watcher.node
     clients = {
         name: node.create_client(GetParameters, f'{name}/get_parameters')
-        for name in sorted(server.who_answers())
+        for name in sorted(server.answering_nodes())
     }
     server.watcher.spin_until_free(
         lambda: all(client.service_is_ready() for client in clients.values()), free_sec=AWAY_SEC

@@ -20,7 +20,7 @@ IN_REACH = (
 """Added to the advice when to warn, if a node only warned: it may catch another ValueError."""
 
 
-def near(angle_deg: float, number: float, within_deg: float = WITHIN_DEG) -> bool:
+def is_near(angle_deg: float, number: float, within_deg: float = WITHIN_DEG) -> bool:
     """Whether a number is that angle, in degrees; a difference of whole turns does not count."""
     off = (angle_deg - number + 180.0) % 360.0 - 180.0
     # a rounded number may be off by exactly the limit: leave room for floating-point errors
@@ -31,7 +31,7 @@ def missing(
     wanted: Sequence[float], numbers: Sequence[float], within_deg: float = WITHIN_DEG
 ) -> list[float]:
     """The wanted angles that are not among the numbers."""
-    return [a for a in wanted if not any(near(a, n, within_deg) for n in numbers)]
+    return [a for a in wanted if not any(is_near(a, n, within_deg) for n in numbers)]
 
 
 def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
@@ -42,7 +42,7 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
     if not numbers:
         return f'log every solution for each target, with self.get_logger().info(…) {HOW}'
     if not missing(wanted, numbers, ROUNDED_DEG):
-        close = [n for n in numbers if any(near(a, n, ROUNDED_DEG) for a in wanted)]
+        close = [n for n in numbers if any(is_near(a, n, ROUNDED_DEG) for a in wanted)]
         if all(number == round(number, 1) for number in close):
             return DECIMALS
         return 'the angles are close, and not right: add nothing to them, and round nothing before'

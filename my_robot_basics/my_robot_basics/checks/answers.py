@@ -89,7 +89,7 @@ def hold_both_branches(bearings_deg: Sequence[float], texts: Iterable[str]) -> b
     pairs = {each for text in texts for each in itertools.pairwise(numbers_with_decimals(text))}
     return any(
         theta2 == -other2 != 0.0
-        and any(angles.near(2 * each, theta1 + other1, MIRRORED_DEG) for each in bearings_deg)
+        and any(angles.is_near(2 * each, theta1 + other1, MIRRORED_DEG) for each in bearings_deg)
         for (theta1, theta2), (other1, other2) in itertools.combinations(
             sorted(pairs)[:MOST_PAIRS], 2
         )
@@ -103,7 +103,7 @@ def form_of(text: str) -> str:
 
 def holds_any(wanted: Iterable[float], text: str) -> bool:
     """Whether one of the angles is among the numbers of a text."""
-    return any(angles.near(angle, number) for angle in wanted for number in numbers_of(text))
+    return any(angles.is_near(angle, number) for angle in wanted for number in numbers_of(text))
 
 
 def stands_for_angles(bearings_deg: Iterable[float], text: str) -> bool:
@@ -136,7 +136,8 @@ def has_stretched(bearings_deg: Iterable[float], text: str) -> bool:
     numbers = numbers_with_decimals(text)
     beside = [*itertools.pairwise(numbers), *zip(numbers[1:], numbers, strict=False)]
     return any(
-        angles.near(bearing, theta1_deg) and any(angles.near(e, theta2_deg) for e in _ELBOWS_DEG)
+        angles.is_near(bearing, theta1_deg)
+        and any(angles.is_near(e, theta2_deg) for e in _ELBOWS_DEG)
         for bearing in bearings_deg
         for theta1_deg, theta2_deg in beside
     )

@@ -9,7 +9,7 @@ from rclpy.client import Client
 from rclpy.task import Future
 
 from my_robot_basics.checks.inconclusive import TooSlow
-from my_robot_basics.graph.unheeded import Unheeded
+from my_robot_basics.graph.ignored_callback_group import IgnoredCallbackGroup
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -32,7 +32,7 @@ class Barriers:
         """Start without a node; call `add` for each."""
         self._watcher = watcher
         self._clients: dict[str, Client] = {}
-        self._unheeded: dict[str, Client] = {}
+        self._unanswered: dict[str, Client] = {}
         self._took_sec: list[float] = []
         self._watch = Stopwatch()
         self._next_median = MEDIAN_EVERY
@@ -45,15 +45,15 @@ class Barriers:
         """Make and return two clients of the node with that full name; nothing is asked yet."""
         node, service = self._watcher.node, f'{name}/get_parameters'
         self._clients[name] = node.create_client(GetParameters, service)
-        self._unheeded[name] = node.create_client(
-            GetParameters, service, callback_group=Unheeded()
+        self._unanswered[name] = node.create_client(
+            GetParameters, service, callback_group=IgnoredCallbackGroup()
         )
-        return self._clients[name], self._unheeded[name]
+        return self._clients[name], self._unanswered[name]
 
     def keep(self, names: Iterable[str]) -> None:
         """Ask only the nodes with these names from now on."""
         self._clients = {name: self._clients[name] for name in names}
-        self._unheeded = {name: self._unheeded[name] for name in self._clients}
+        self._unanswered = {name: self._unanswered[name] for name in self._clients}
 
     def ask(self, names: Iterable[str] | None = None) -> dict[str, Future]:
         """Request `use_sim_time` of these nodes, or of all; return the futures by node name."""
@@ -76,7 +76,7 @@ class Barriers:
         """
         start = time.monotonic()
         for _ in range(questions - 1):
-            for client in self._unheeded.values():
+            for client in self._unanswered.values():
                 # only the last answer is read: the others need no future
                 with client.handle:
                     client.handle.send_request(NOTHING)

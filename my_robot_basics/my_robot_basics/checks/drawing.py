@@ -125,11 +125,11 @@ class Drawing:
     def _expect_asked(self, number: int) -> None:
         servers = self._servers
         self._comes(
-            lambda: servers.was_asked(number) or bool(servers.strays()), free_sec=REPLY_SEC
+            lambda: servers.was_asked(number) or bool(servers.stray_requests()), free_sec=REPLY_SEC
         )
         _, x, y = self._targets[number]
         wanted = f'a request to {SOLVE_IK} for ({x:g}, {y:g})'
-        if strays := servers.strays():
+        if strays := servers.stray_requests():
             fail(
                 expected=wanted,
                 seen=f'one for ({strays[0].target.x:g}, {strays[0].target.y:g})',

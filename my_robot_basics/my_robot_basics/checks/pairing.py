@@ -61,7 +61,7 @@ def _angles(solutions: Solutions, line: str) -> list[_Angle]:
             (branch, joint)
             for branch, pair in enumerate(solutions)
             for joint, angle in enumerate(pair)
-            if angles.near(angle, number)
+            if angles.is_near(angle, number)
         ]
         found += [(labels[0], number, start, end)] if len(labels) == 1 else []
     ends, starts = [0, *(each[3] for each in found)], [*(each[2] for each in found), len(line)]

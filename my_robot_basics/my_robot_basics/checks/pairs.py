@@ -41,13 +41,13 @@ class Pairs:
         else:
             self.whole += 1
 
-    def tell(self) -> bool | None:
+    def verdict(self) -> bool | None:
         """Whether mostly only one message of a pair comes out; None if more pairs are needed."""
         if self.whole >= WHOLE + self.split // MOST_SPLIT:
             return False
         most_split = MOST_SPLIT * (WHOLE + self.whole if self.watch.is_busy() else 1)
         return True if self.split >= most_split else None
 
-    def tell_at_last(self) -> bool:
+    def last_verdict(self) -> bool:
         """The same if there is no time for more pairs."""
         return self.split >= MOST_SPLIT and self.whole < WHOLE

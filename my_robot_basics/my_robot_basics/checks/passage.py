@@ -105,7 +105,7 @@ class Passage:
     def loses_one_of_two(self, messages: Iterator[VariedMessage]) -> bool:
         """Whether mostly only one of two messages in quick succession comes out."""
         pairs = Pairs()
-        while (told := pairs.tell()) is None and not self._is_over(LAST_SEC):
+        while (told := pairs.verdict()) is None and not self._is_over(LAST_SEC):
             first, gap = next(messages), Stopwatch()
             self._waiting = [first]
             self._let_in(first)
@@ -114,7 +114,7 @@ class Passage:
             self._send(next(messages))
             out_sec = 0.0 if self._waiting else (self._out[-1][1] - self._out[-2][1]) / 1e9
             pairs.count(is_whole=not self._waiting, gap_sec=gap_sec, out_sec=out_sec)
-        return pairs.tell_at_last() if told is None else told
+        return pairs.last_verdict() if told is None else told
 
     def loses_after_a_pause(self, messages: Iterator[VariedMessage]) -> bool:
         """Whether the first message after a pause is lost each time."""

@@ -80,7 +80,7 @@ class PlayerServers(ScriptedActionServer):
         later = range(number + 1, len(self.targets))
         return not self.was_asked(number) and any(map(self.was_asked, later))
 
-    def strays(self) -> list[Any]:
+    def stray_requests(self) -> list[Any]:
         """The requests for points that are not targets."""
         points = [(x, y) for _, x, y in self.targets]
         return [r for r in self.solver.requests if not any(is_for(r, *each) for each in points)]

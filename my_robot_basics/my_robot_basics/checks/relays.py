@@ -16,7 +16,7 @@ from my_robot_basics.checks.relay_endpoints import TIMEOUT_SEC, RelayEndpoints
 from my_robot_basics.checks.relay_faults import RelayFaults, what_differs
 from my_robot_basics.checks.variety import vary_messages, with_filled_fields
 from my_robot_basics.feedback.errors import CheckFailed, fail
-from my_robot_basics.graph import familiar
+from my_robot_basics.graph import earlier_waits
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import free_turns
 
@@ -129,14 +129,14 @@ class Relay:
             fault, hint = carried.fault()
             self._fail(fault, raised.why(watcher) or hint, carried.doubt)
         seen = watcher.context, ('passes on after a pause', self), recorder.endpoint_gids()
-        if not familiar.is_known(*seen) and passage.loses_after_a_pause(messages):
+        if not earlier_waits.is_known(*seen) and passage.loses_after_a_pause(messages):
             self._fail(
                 'a message that is not republished when it is the first after a pause',
                 raised.why(watcher) or 'publish in every call of the callback, whenever it comes',
             )
         if (copies := passage.copies()) > 1:
             self._fail(*RelayFaults(copies=copies).fault())
-        familiar.remember(*seen)
+        earlier_waits.remember(*seen)
         if passage.loses_one_of_two(messages):
             self._fail(
                 'two messages in quick succession of which only one is republished',

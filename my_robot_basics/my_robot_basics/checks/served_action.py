@@ -180,21 +180,21 @@ class ServedAction(ScriptedActionServer):
 
     def let_client_know(self) -> None:
         """Wait until the client must have processed what was sent to it before."""
-        self.who_answers()
+        self.answering_nodes()
         self.watcher.spin_for(SOON_SEC if self._mute else 0.0)
 
-    def who_answers(self) -> set[str]:
+    def answering_nodes(self) -> set[str]:
         """Full names of the client's nodes whose parameter services have always answered."""
         names = {*self._outcomes.publishers()} - self._mute
         self._mute |= {name for name in names if not answers_parameters(self.watcher, name)}
         return names - self._mute
 
     def _why_no_goal(self) -> str:
-        how = {'asked_on': self.asked_on, 'was_away': self._was_away, **self._who()}
+        how = {'asked_on': self.asked_on, 'was_away': self._was_away, **self._client_state()}
         return why_no_goal(self.watcher, self.name, self.type, **how)
 
     def _why_silent(self, hint: str) -> str:
-        return why_silent(self.watcher, hint, **self._who())
+        return why_silent(self.watcher, hint, **self._client_state())
 
-    def _who(self) -> dict[str, Any]:
+    def _client_state(self) -> dict[str, Any]:
         return {'node_names': self._outcomes.publishers(), 'raised': self._raised}

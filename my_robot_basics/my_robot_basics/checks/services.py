@@ -13,7 +13,7 @@ from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import student_text
-from my_robot_basics.graph import familiar, graphs, services
+from my_robot_basics.graph import earlier_waits, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
 ANSWER_SEC = 4.0
@@ -85,7 +85,7 @@ class Service:
             )
         expect_type(self.name, self.type, found, maker='create_service')
         known = ('service', self.name), {**found}
-        if not familiar.is_known(watcher.context, *known):
+        if not earlier_waits.is_known(watcher.context, *known):
             watcher.spin_for(graphs.NEWCOMER_SEC)
         # count servers, not names: two nodes may have the same name
         count = watcher.node.count_services(self.name)
@@ -98,7 +98,7 @@ class Service:
             else 'call create_service once, in __init__, and start the node once',
             cause=f'{self.name} has more than one server',
         )
-        familiar.remember(watcher.context, *known)
+        earlier_waits.remember(watcher.context, *known)
         return next(iter(found))
 
     def _fail_unanswered(

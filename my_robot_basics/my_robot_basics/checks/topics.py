@@ -11,7 +11,7 @@ from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import DISCOVERY_SEC, TopicEndpoints
 from my_robot_basics.feedback.errors import expect, fail, shorten
-from my_robot_basics.graph import familiar
+from my_robot_basics.graph import earlier_waits
 from my_robot_basics.graph.raised import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
@@ -116,7 +116,7 @@ class Topic(TopicEndpoints):
                     seen=shorten(seen(last)) if seen else others,
                     hint=hint(last) if callable(hint) else hint,
                 )
-            familiar.remember(watcher.context, *self._answered(recorder))
+            earlier_waits.remember(watcher.context, *self._answered(recorder))
             if once and (times := len(recorder.messages())) > 1:
                 fail(
                     expected='one message for each that your node receives',
@@ -130,7 +130,7 @@ class Topic(TopicEndpoints):
         return ('answers', self.name), recorder.endpoint_gids()
 
     def _has_answered(self, watcher: Watcher, recorder: Recorder) -> bool:
-        return familiar.is_known(watcher.context, *self._answered(recorder))
+        return earlier_waits.is_known(watcher.context, *self._answered(recorder))
 
     def _expect_none_early(self, watcher: Watcher, recorder: Recorder) -> None:
         """No message comes before the check has sent anything. Raises CheckFailed."""

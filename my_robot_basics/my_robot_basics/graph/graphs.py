@@ -7,7 +7,7 @@ from rclpy.node import Node
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from my_robot_basics.exchange import student
-from my_robot_basics.graph import familiar
+from my_robot_basics.graph import earlier_waits
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import HIDDEN, Watcher
 
@@ -112,11 +112,11 @@ def wait_for_publisher(watcher: Watcher, topic_name: str, *, timeout_sec: float)
             last, since, changes = now, time.monotonic(), changes + 1
         known = bool(now) and all(node_name != UNKNOWN for node_name, *_ in now)
         is_long = time.monotonic() - since >= NEWCOMER_SEC
-        return known and (is_long or familiar.is_known(watcher.context, topic_name, now))
+        return known and (is_long or earlier_waits.is_known(watcher.context, topic_name, now))
 
     is_there = watcher.spin_until(is_settled, timeout_sec=timeout_sec)
     if is_there:
-        familiar.remember(watcher.context, topic_name, last)
+        earlier_waits.remember(watcher.context, topic_name, last)
     return is_there or (bool(last) and changes >= MANY_NEWCOMERS)
 
 

@@ -43,8 +43,8 @@ class _Kind(NamedTuple):
 class LeanExecutor(Executor):
     """Calls callbacks in the thread that calls `spin_once`, in the order of rclpy's own executor.
 
-    Callback groups are asked only when the wait set is built (see `Unheeded`), not before each
-    callback: no callback of a check has to wait for another one.
+    Callback groups are asked only when the wait set is built (see `IgnoredCallbackGroup`), not
+    before each callback: no callback of a check has to wait for another one.
     """
 
     def __init__(self, *, context: Context) -> None:

@@ -12,10 +12,10 @@ from rclpy.parameter import Parameter
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.feedback.hidden import is_in_test_room, student_text
 from my_robot_basics.graph.cell_context import context_of_cell, new_context
+from my_robot_basics.graph.ignored_callback_group import IgnoredCallbackGroup
 from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.strange_names import strange_name
-from my_robot_basics.graph.unheeded import Unheeded
 from my_robot_basics.session import classroom, interactions
 from my_robot_basics.session.environment import set_meanwhile
 from my_robot_basics.session.pressure import free_turns
@@ -118,7 +118,7 @@ class Watcher:
             parameter_overrides=[Parameter('start_type_description_service', value=False)],
         )
         for event in node.waitables:  # QoS events of /parameter_events; each slows every wait down
-            event.callback_group = Unheeded()
+            event.callback_group = IgnoredCallbackGroup()
         self._executor.add_node(node)
         self._nodes.append(node)
         return node

@@ -12,7 +12,7 @@ from rclpy.service import Service
 
 from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.exchange.wrong_fields import wrong_field
-from my_robot_basics.live.bare_errors import how_to_make
+from my_robot_basics.live.wrong_arguments import how_to_make
 from my_robot_basics.session.errors import without_signatures
 
 UNFINISHED_SEC = 0.5

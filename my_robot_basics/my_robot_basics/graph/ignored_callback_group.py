@@ -3,7 +3,7 @@
 from rclpy.callback_groups import CallbackGroup
 
 
-class Unheeded(CallbackGroup):
+class IgnoredCallbackGroup(CallbackGroup):
     """Its entities are never in a wait set, so they neither wake the executor nor run."""
 
     def can_execute(self, entity: object) -> bool:
