@@ -69,7 +69,7 @@ def server(monkeypatch):
                 return free_part * self.wall_sec()
 
         monkeypatch.setattr(absent_servers, 'Stopwatch', Watch)
-        monkeypatch.setattr(absent_servers.node_troubles, 'unfinished', lambda name: line)
+        monkeypatch.setattr(absent_servers.node_troubles, 'blocking_line', lambda name: line)
         return made
 
     return make

@@ -63,7 +63,7 @@ def test_a_check_of_a_missing_server_raises_the_exception_of_its_wait(
 ):
     monkeypatch.setattr(module, 'wait_for_server', lambda *_: NoServer('none in 9 s', doubt))
     seen = SimpleNamespace(why_none=lambda name, maker: f'look at {name} in {maker}(…)')
-    monkeypatch.setattr(graph, 'take', lambda node: seen)
+    monkeypatch.setattr(graph, 'take_graph', lambda node: seen)
     check = SimpleNamespace(name='/arm', watcher=SimpleNamespace(node=None))
     with pytest.raises(CheckFailed, match='/arm, saw none in 9 s: look at /arm in') as raised:
         look(check)
