@@ -119,7 +119,7 @@ class Said:
             case ast.Name(id=name):
                 others = {key: value for key, value in here.items() if key != name}
                 pairs = [(value, others) for value in self._of(name, here)]
-            case ast.Call(func=ast.Name(id='theirs' | 'shorten'), args=[first, *_]):
+            case ast.Call(func=ast.Name(id='student_text' | 'shorten'), args=[first, *_]):
                 pairs = [(first, here)]
             case ast.Call(func=function):
                 pairs = self._returned.get(name_of(function), [])
