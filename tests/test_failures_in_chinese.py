@@ -28,7 +28,7 @@ CODE = re.compile(
     r'`[^`]*`|\'[^\']*\'|"[^"]*"|--[\w-]+|\{[^}]*\}|[\w…]*[/_.(=\[:][^\s，。；：（）]*'
 )
 """Text that is not translated: quotations, options, paths, names with a _ or a dot, calls."""
-WORD = re.compile(r'(?<![A-Za-z])[a-z]{2,}(?![A-Za-z])')
+WORD = re.compile(r'(?<![A-Za-z])[a-z]{2,}(?![A-Za-z\d])')  # joint1 is a name
 NAMES = {
     *('rad', 'notebook', 'rcl', 'rclpy', 'colcon', 'logger', 'main', 'time', 'call', 'return'),
     *('nan', 'string', 'wstring', 'liveliness', 'remaining', 'reachable', 'targets'),
