@@ -270,13 +270,14 @@ def test_an_endless_verb_ends_when_its_output_is_closed(words):
 
 
 def test_head_receives_its_lines_of_echo():
-    # with its type it waits for a publisher: without, a busy machine may show none in time
+    # with its type it waits for a publisher: without, a busy machine may show none in time;
+    # `timeout` ends it then: its node would be in the way of the tests that follow
+    echo = f'"{SCRIPT}" topic echo {TOPIC} sensor_msgs/msg/JointState'
     done = subprocess.run(
-        f'"{SCRIPT}" topic echo {TOPIC} sensor_msgs/msg/JointState | head -3',
+        f'timeout {TIMEOUT_SEC} {echo} | head -3',
         shell=True,
         capture_output=True,
         encoding='utf-8',
-        timeout=TIMEOUT_SEC,
     )
     assert re.fullmatch(r'header:\n  stamp:\n    sec: \d+\n', done.stdout)
     assert done.stderr == ''
