@@ -4,7 +4,6 @@ One IPython hook, which runs after each cell, does so for all checks; the grader
 """
 
 import ast
-import os
 from typing import Any
 
 from my_robot_basics.session import kernel
@@ -12,16 +11,11 @@ from my_robot_basics.session import kernel
 PASSED = '✓ All checks in this cell pass.'
 
 _CHECKS = 'my_robot_basics.checks'
-_watched: list[Any] = []
 
 
 def watch() -> None:
     """From now on, print PASSED below each check cell that passes; a second call does nothing."""
-    shell = kernel.shell()
-    if shell is None or 'MY_ROBOT_BASICS_ROOM' in os.environ or shell in _watched:
-        return
-    shell.events.register('post_run_cell', _tell)
-    _watched.append(shell)
+    kernel.call_after_cells(_tell)
 
 
 def is_check(source: str) -> bool:

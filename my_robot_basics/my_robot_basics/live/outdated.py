@@ -4,7 +4,6 @@ Students who correct an answer and run its check again often forget the cell wit
 between the two: then the check looks at the node of the answer before. *Validate* runs all cells.
 """
 
-import os
 import sys
 from typing import Any
 
@@ -14,16 +13,10 @@ from my_robot_basics.session import kernel
 from my_robot_basics.session.errors import tell
 from my_robot_basics.session.neighbours import nodes_here
 
-_watched: list[Any] = []
-
 
 def watch() -> None:
     """From now on, look after each check in a student's own notebook; again, it does nothing."""
-    shell = kernel.shell()
-    if shell is None or 'MY_ROBOT_BASICS_ROOM' in os.environ or shell in _watched:
-        return
-    shell.events.register('post_run_cell', _after_cell)
-    _watched.append(shell)
+    kernel.call_after_cells(_after_cell)
 
 
 def _after_cell(result: Any) -> None:
