@@ -20,12 +20,11 @@ from grader.course import Course
 Texts = dict[str, list[str]]
 """The places of each English text of a part, in reading order."""
 
-IN_WORDS: tuple[str, ...] = ('action_types', 'background', 'camera', 'commands', 'copies')
-IN_WORDS += ('course_nodes', 'definition_view', 'entry_points', 'executables', 'exercise')
-IN_WORDS += ('install_faults', 'node_file', 'outdated', 'package_build', 'package_faults')
-IN_WORDS += ('package_needs', 'packages', 'panel', 'program', 'refusals', 'runner', 'sliders')
-IN_WORDS += ('spinning', 'unknown_robot', 'waiting', 'workspace')
-"""The modules of `live` with sentences for users; the others only draw."""
+ONLY_DRAWN = {
+    *('arm', 'branches', 'follow', 'goal_view', 'graph_picture', 'qos_offers', 'qos_pictures'),
+    *('queue_picture', 'service_picture', 'stdout_tap', 'target', 'timeline', 'troubles'),
+}
+"""The modules of `live` whose texts are parts of pictures, and no sentences."""
 MODULES = {
     'checks': [
         f'my_robot_basics/my_robot_basics/{package}/*.py'
@@ -37,11 +36,8 @@ MODULES = {
     ],
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
-        f'my_robot_basics/my_robot_basics/{module}.py'
-        for module in (
-            *('session/*', 'ros2/environment', 'ros2/shell'),
-            *(f'live/{each}' for each in IN_WORDS),
-        )
+        f'my_robot_basics/my_robot_basics/{modules}.py'
+        for modules in ('session/*', 'ros2/environment', 'ros2/shell', 'live/*')
     ],
     'doctor': [
         f'my_robot_basics/my_robot_basics/doctor/{modules}.py'
@@ -115,6 +111,8 @@ def _add(texts: Texts, found: Iterable[str], place: str) -> None:
 def _modules(root: Path, patterns: Sequence[str]) -> Texts:
     texts: Texts = {}
     for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
+        if path.parent.name == 'live' and path.stem in ONLY_DRAWN:
+            continue
         _add(texts, messages_in(path.read_text(encoding='utf-8')), str(path.relative_to(root)))
     return texts
 

@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from my_robot_basics.live.dependencies import undeclared_dependencies
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_sources, fault_in_words
-from my_robot_basics.live.package_needs import undeclared_dependencies
 from my_robot_basics.session import classroom, package_files, subreaper
 
 MOST_WORDS = 20_000
@@ -43,7 +43,7 @@ class Build:
     """The executables that `ros2 run` finds in it."""
     left_out: tuple[str, ...] = ()
     """Files in its folder that do not belong to it, each with the reason."""
-    unnamed: tuple[str, ...] = ()
+    undeclared: tuple[str, ...] = ()
     """What package.xml should name, too, for a robot; nothing that stops the package here."""
 
 
@@ -82,9 +82,9 @@ def build(package: str, folder: Path) -> Build:
         return Build(package, None, problem, left_out=files.left_out)
     problem = fault_in_words(package, status, words) if status else ''
     problem = problem or fault_in_install(package, prefix_of(package), files)
-    unnamed = () if problem else undeclared_dependencies(package, files)
+    undeclared = () if problem else undeclared_dependencies(package, files)
     found = executables_of(package)
-    return Build(package, status, problem, words, found, files.left_out, unnamed)
+    return Build(package, status, problem, words, found, files.left_out, undeclared)
 
 
 def _run_colcon(package: str, files: Mapping[str, Path]) -> tuple[int, str]:

@@ -40,7 +40,7 @@ def build_package(name: str) -> None:
     tell(_build_message(built), in_one=False)
     for clause in built.left_out:
         tell(f'not handed in, and not built: {clause}', in_one=False)
-    for clause in built.unnamed:
+    for clause in built.undeclared:
         tell(clause, in_one=False)
 
 
