@@ -1,5 +1,6 @@
 """ROS packages that a package imports, but its package.xml does not name."""
 
+import ament_index_python
 import pytest
 from my_robot_basics.live.dependencies import undeclared_dependencies
 from my_robot_basics.session import package_files
@@ -35,7 +36,6 @@ def test_each_undeclared_ros_package_is_reported_once(undeclared):
 @pytest.mark.parametrize(
     'line',
     [
-        'from greeter import greet',
         'from . import sensor_msgs',
         'from .sensor_msgs import msg',
         'import numpy',
@@ -45,6 +45,12 @@ def test_each_undeclared_ros_package_is_reported_once(undeclared):
 )
 def test_other_imports_need_no_entry_in_package_xml(undeclared, line):
     assert undeclared(**{'greeter/more.py': line}) == ()
+
+
+def test_a_package_that_is_installed_need_not_declare_itself(undeclared, monkeypatch):
+    installed = {PACKAGE: '/x', 'rclpy': '/x', 'std_msgs': '/x'}
+    monkeypatch.setattr(ament_index_python, 'get_packages_with_prefixes', lambda: installed)
+    assert undeclared(**{'greeter/more.py': 'from greeter import greet'}) == ()
 
 
 def test_only_modules_of_the_package_itself_are_searched(undeclared):
