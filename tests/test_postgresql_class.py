@@ -3,7 +3,7 @@
 import subprocess
 
 import pytest
-import serving_desk
+import quick_serve
 from course_maker import TOY, add_lesson, answered, released_course, submit
 from nbgrader.api import Gradebook
 from postgresql_server import nbgrader, released_in, students_in
@@ -57,7 +57,7 @@ def both(tmp_path, postgresql):
 
 
 def hand_in(course, student, when, *, explains=True, answer=''):
-    right = serving_desk.WRONG if student in WRONG else serving_desk.RIGHT
+    right = quick_serve.WRONG if student in WRONG else quick_serve.RIGHT
     explained = f'Because of {student}.' if explains else ''
     path = submit(course, student, answered(course, answer or right, explained=explained))
     if when:
@@ -83,7 +83,7 @@ class Journey:
         """Call a verb in both courses; return their output, which has to be equal."""
         found = []
         for course in self.courses:
-            with serving_desk.stood_in():
+            with quick_serve.without_rooms():
                 status = main([*verb], course=course)
             out, err = self.capfd.readouterr()
             found.append((status, plain(out, course), plain(err, course)))
@@ -120,7 +120,7 @@ def test_late_penalties_manual_points_and_tables_equal_those_of_sqlite(both, cap
     journey = Journey(both, capfd)
     for course in both:
         (course.gradebook / 'deadlines.toml').write_text(RULES)
-        serving_desk.grade_here(course)
+        quick_serve.grade_here(course)
     journey.run('due', TOY, '2026-03-29T23:59+02:00')
     for verb in ('scores', 'feedback'):
         journey.run(verb)
@@ -140,8 +140,8 @@ def test_late_penalties_manual_points_and_tables_equal_those_of_sqlite(both, cap
     journey.run('feedback')
     assert len(journey.files('feedback/*/*/*.html')) == len(CLASS)
     for course in both:
-        hand_in(course, 'zoe', '2026-04-02 10:00:00 UTC', answer=f'# again\n{serving_desk.RIGHT}')
-        serving_desk.grade_here(course)
+        hand_in(course, 'zoe', '2026-04-02 10:00:00 UTC', answer=f'# again\n{quick_serve.RIGHT}')
+        quick_serve.grade_here(course)
     journey.run('scores', '--totals')
     assert 'zoe,1.8,' in journey.file('gradebook/totals.csv')
     for form in ('moodle', 'canvas'):
@@ -158,7 +158,7 @@ def test_late_penalties_manual_points_and_tables_equal_those_of_sqlite(both, cap
 def test_removing_a_student_or_a_lesson_has_the_same_effect_as_in_sqlite(both, capfd):
     journey = Journey(both, capfd)
     for course in both:
-        serving_desk.grade_here(course)
+        quick_serve.grade_here(course)
     journey.run('feedback')
     journey.nbgrader('db', 'student', 'remove', 'Zed', '--force')
     said = journey.run('feedback')
@@ -179,13 +179,13 @@ def test_removing_a_student_or_a_lesson_has_the_same_effect_as_in_sqlite(both, c
 def test_a_backup_can_be_restored_as_documented(course, postgresql, capfd):
     for student in ('ada', 'bob'):
         hand_in(course, student, None)
-    serving_desk.grade_here(course)
+    quick_serve.grade_here(course)
     give_by_hand(course, 'ada', 1.5, 'good')
     dump = back_up(course)
     totals = write_totals(course).read_bytes()
     hand_in(course, 'zoe', None)
     give_by_hand(course, 'ada', 0.5, 'a slip')
-    serving_desk.grade_here(course)
+    quick_serve.grade_here(course)
     assert write_totals(course).read_bytes() != totals
     restore = ['pg_restore', '--clean', '--if-exists', '--single-transaction']
     address = course.db_url.replace('+psycopg', '').partition('?')[0]
@@ -194,10 +194,10 @@ def test_a_backup_can_be_restored_as_documented(course, postgresql, capfd):
     )
     assert done.returncode == 0
     assert write_totals(course).read_bytes() == totals
-    with serving_desk.stood_in():
+    with quick_serve.without_rooms():
         assert main(['feedback'], course=course) == 0
     assert '00_toy of zoe has no page of feedback: ' in capfd.readouterr().out
-    assert {row.student_id: row.reused for row in serving_desk.grade_here(course)} == {
+    assert {row.student_id: row.reused for row in quick_serve.grade_here(course)} == {
         'ada': True,
         'bob': True,
         'zoe': False,
@@ -208,10 +208,10 @@ def test_a_backup_can_be_restored_as_documented(course, postgresql, capfd):
 def test_a_submission_that_arrives_while_the_server_is_away_is_graded_later(
     course, postgresql, tmp_path, monkeypatch
 ):
-    inbound = serving_desk.exchange_in(tmp_path)
-    serving_desk.hand_in(course, inbound, 'ada', serving_desk.WRONG)
-    serving_desk.serve_here(course, inbound)
-    serving_desk.hand_in(course, inbound, 'ada', serving_desk.RIGHT, number=2)
+    inbound = quick_serve.exchange_in(tmp_path)
+    quick_serve.hand_in(course, inbound, 'ada', quick_serve.WRONG)
+    quick_serve.serve_here(course, inbound)
+    quick_serve.hand_in(course, inbound, 'ada', quick_serve.RIGHT, number=2)
     put = steps.put_in_place
 
     def when_it_is_away(*given):
@@ -221,9 +221,9 @@ def test_a_submission_that_arrives_while_the_server_is_away_is_graded_later(
     with monkeypatch.context() as patch:
         patch.setattr(steps, 'put_in_place', when_it_is_away)
         with pytest.raises(OperationalError):
-            serving_desk.serve_here(course, inbound)
+            quick_serve.serve_here(course, inbound)
     postgresql.start()
-    said = serving_desk.serve_here(course, inbound)
+    said = quick_serve.serve_here(course, inbound)
     assert [each.partition(':')[0] for each in said] == ['graded']
-    assert [each.state for each in serving_desk.arrivals(course)] == [GRADED, GRADED]
+    assert [each.state for each in quick_serve.arrivals(course)] == [GRADED, GRADED]
     assert 'ada,3.0,' in write_totals(course).read_text(encoding='utf-8')

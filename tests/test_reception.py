@@ -8,9 +8,9 @@ from contextlib import contextmanager
 
 import nbformat
 import pytest
-import serving_desk
+import quick_serve
 from course_maker import TOY, answered, with_own_database
-from serving_desk import RIGHT, arrivals, put_there, serve_here
+from quick_serve import RIGHT, arrivals, put_there, serve_here
 from sqlalchemy.exc import DataError, OperationalError
 
 from grader.collect.archive_entries import MAX_PARTS
@@ -239,7 +239,7 @@ def test_an_unexpected_error_after_intake_affects_only_one_submission(
         raise error
 
     monkeypatch.setattr(steps, step, fails_once)
-    monkeypatch.setattr(serving_desk, 'feedback_folder', lambda inbound: inbound.parent / 'pages')
+    monkeypatch.setattr(quick_serve, 'feedback_folder', lambda inbound: inbound.parent / 'pages')
     said = serve_here(course, inbound)
     found = {each.student_id: (each.state, each.reason) for each in arrivals(course)}
     assert found.pop('zoe') == (GRADED, '')

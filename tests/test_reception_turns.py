@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 from course_maker import TOY, answered, with_own_database
-from serving_desk import RIGHT, arrivals, put_there, serve_here
+from quick_serve import RIGHT, arrivals, put_there, serve_here
 
 from grader.serving import inbound as inbound_module
 from grader.serving import intake, reception, steps

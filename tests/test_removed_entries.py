@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 from course_maker import TOY, answered, with_own_database
-from serving_desk import RIGHT, arrivals, put_there, serve_here
+from quick_serve import RIGHT, arrivals, put_there, serve_here
 
 from grader.serving import removed_entries
 from grader.serving.queue import GRADED, REFUSED, REPLACED, Arrival

@@ -12,7 +12,7 @@ from course_maker import TOY, answered, with_own_database
 from nbgrader.auth import Authenticator
 from nbgrader.coursedir import CourseDirectory
 from nbgrader.exchange.default import ExchangeFetchFeedback, ExchangeSubmit
-from serving_desk import (
+from quick_serve import (
     RIGHT,
     WRONG,
     exchange_in,
@@ -20,7 +20,7 @@ from serving_desk import (
     hand_in,
     page_of,
     serve_here,
-    stood_in,
+    without_rooms,
 )
 from traitlets.config import Config
 
@@ -243,7 +243,7 @@ def test_a_grade_with_newly_chosen_hidden_inputs_is_replayed_exactly(course, inb
     serve_here(course, inbound)
     seed = graded_notebook(course, 'ada', TOY).metadata[KEY].seed
     assert seed != course.seed(TOY, 'ada')
-    with stood_in():
+    with without_rooms():
         main(['grade', '--student', 'ada', '--seed', 'recorded'], course=course)
         said = capsys.readouterr().out
         assert f'seed {seed}\n' in said

@@ -9,9 +9,9 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-import serving_desk
+import quick_serve
 from course_maker import TOY, released_course
-from serving_desk import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of, serve_here
+from quick_serve import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of, serve_here
 
 from grader.grading import REPLACED as REPLACED_MEANWHILE
 from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING
@@ -26,7 +26,7 @@ def inbound(tmp_path):
 
 def killed_rounds(course, inbound, rounds, chance):
     """Serve under load, and SIGKILL it at random moments; then serve to the end."""
-    command = serving_desk.command(course, inbound)
+    command = quick_serve.command(course, inbound)
     students, number = ['ada', 'bob', 'zoe'], 0
     latest = {}
     for _ in range(rounds):
@@ -92,7 +92,7 @@ def test_serve_killed_at_random_moments_loses_no_submission_page_or_score(
 def test_grade_may_run_beside_serve(tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     process = subprocess.Popen(
-        serving_desk.command(course, inbound), stdout=subprocess.PIPE, text=True
+        quick_serve.command(course, inbound), stdout=subprocess.PIPE, text=True
     )
     latest, others = {}, []
     try:
@@ -125,7 +125,7 @@ def test_grade_may_run_beside_serve(tmp_path, inbound):
 def test_sigterm_ends_serve_and_its_submission_stays_in_the_queue(tmp_path, inbound):
     course = released_course(tmp_path / 'course')
     hand_in(course, inbound, 'ada', f'# 600 s\n{RIGHT}')
-    command = serving_desk.command(course, inbound)
+    command = quick_serve.command(course, inbound)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert 'taken in' in process.stdout.readline()
     process.terminate()

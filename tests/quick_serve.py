@@ -80,7 +80,7 @@ def page_of(inbound: Path, secret: str) -> Path:
 
 def command(course: Course, inbound: Path, *options: str) -> list[str]:
     """Return the command that serves a course in a separate process."""
-    code = f'import sys; sys.path[:0] = {sys.path!r}; import serving_desk; serving_desk.main()'
+    code = f'import sys; sys.path[:0] = {sys.path!r}; import quick_serve; quick_serve.main()'
     return [sys.executable, '-c', code, str(course.root), str(inbound), *options]
 
 
@@ -95,7 +95,7 @@ async def look(notebook, *, extra_files=(), seed='', trust_students=False):
 
 
 @contextmanager
-def stood_in() -> Iterator[None]:
+def without_rooms() -> Iterator[None]:
     """Replace the rooms by `look` in this process."""
     with pytest.MonkeyPatch.context() as patch:
         stand_in(look, patch)
@@ -106,7 +106,7 @@ def stood_in() -> Iterator[None]:
 
 def grade_here(course: Course) -> list[SubmissionOutcome]:
     """Do what `./course grade` does."""
-    with stood_in():
+    with without_rooms():
         return list(grade_all(course, find_submissions(course)))
 
 
@@ -114,7 +114,7 @@ def serve_here(course: Course, inbound: Path, **options: object) -> list[str]:
     """Serve until nothing is left; return the lines that it printed."""
     said: list[str] = []
     options = {'once': True, 'say': said.append} | options
-    with stood_in():
+    with without_rooms():
         serve(
             course,
             inbound,
