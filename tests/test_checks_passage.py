@@ -8,7 +8,7 @@ from my_robot_basics.checks import pairs
 from my_robot_basics.checks import passage as passage_module
 from my_robot_basics.checks import pushed_out as pushed_out_module
 from my_robot_basics.checks.enough import fewest_in_a_row
-from my_robot_basics.checks.passage import Passage
+from my_robot_basics.checks.passage import MOST_LATE, Passage
 from my_robot_basics.checks.pushed_out import FEW, FLOOD, MOST, MOST_GRADED, PushedOut
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.relay_faults import RelayFaults
@@ -263,6 +263,45 @@ def test_a_few_losses_are_excused_where_points_are_given(monkeypatch, lost, is_w
     )
     assert faults.is_whole() == is_whole
     assert lost < MOST
+
+
+@pytest.mark.parametrize(
+    ('lost', 'is_whole'), [(MOST + MOST_LATE - 1, True), (MOST + MOST_LATE, False)]
+)
+def test_more_losses_are_excused_by_hand_and_never_in_doubt(monkeypatch, lost, is_whole):
+    """Nobody takes a second look there."""
+    monkeypatch.setattr(pairs.Stopwatch, 'is_busy', lambda _: True)
+    faults = carried_beside_another_publisher(
+        lambda number, message: number % 5 == 2 and number < 5 * lost, others_publish=True
+    )
+    assert (faults.is_whole(), faults.doubt) == (is_whole, CheckFailed)
+
+
+@pytest.mark.parametrize('is_lost', [False, True])
+def test_an_excused_loss_is_in_doubt_if_too_few_messages_came_out_in_time(
+    monkeypatch, is_graded, is_lost
+):
+    monkeypatch.setattr(pairs.Stopwatch, 'is_busy', lambda _: True)
+    monkeypatch.setattr(passage_module, 'MOST_SEC', 0.0)
+    faults = carried_beside_another_publisher(
+        lambda number, message: is_lost and number == 1, others_publish=True
+    )
+    in_doubt = is_graded and is_lost
+    assert (faults.is_whole(), faults.doubt) == (
+        not in_doubt,
+        Starved if in_doubt else CheckFailed,
+    )
+
+
+def test_no_more_messages_are_sent_once_too_many_losses_are_in_doubt(monkeypatch):
+    monkeypatch.setattr(pairs.Stopwatch, 'is_busy', lambda _: True)
+    monkeypatch.setattr(pushed_out_module, 'is_in_test_room', lambda: True)
+    node = NodeOfTwoPublishers(lambda number, message: number % 30 == 5)
+    faults = passage_through(node, others_publish=True).carry(
+        VariedMessage(n, '') for n in count()
+    )
+    assert faults.doubt is Starved
+    assert next(node.numbers) == 30 * MOST_GRADED + 5 + 1
 
 
 def test_losses_that_nothing_excuses_are_in_no_doubt(monkeypatch):
