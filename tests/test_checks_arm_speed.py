@@ -146,6 +146,27 @@ def test_finer_steps_show_whether_a_server_is_slow_at_that_speed_alone(
     assert time.step_ns == 50_000_000
 
 
+@pytest.mark.parametrize(('speed', 'moves_made'), [(2.0, 2), (3.0, 1)])
+def test_no_move_in_finer_steps_goes_farther_than_its_goal(monkeypatch, speed, moves_made):
+    """At a high speed, the short move is no slower than that: there is nothing more to see."""
+    told = [(n, MoveArm.Feedback(position=[0.0, 0.0])) for n in range(60)]
+    sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=speed), feedback=lambda: told)
+    time, made = object.__new__(DrivenTime), []
+    time.step_ns = 50_000_000
+    arm = SimpleNamespace(start=(0.0, 0.0), time=time, seconds=lambda sent: 0.4)
+
+    def slowness(arm, position, *, seconds):
+        made.append(position)
+        return 1.0
+
+    monkeypatch.setattr(arm_speed, 'bring', lambda *_: None)
+    monkeypatch.setattr(arm_speed, '_slowness', slowness)
+    monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: SimpleNamespace(rad_per_sec=speed))
+    assert IN_FINER_STEPS(arm, sent, MINUTE)
+    assert len(made) == moves_made
+    assert all(0.0 < position[0] <= MINUTE[0] for position in made)
+
+
 @pytest.mark.parametrize('off', [-0.04, 0.04, 0.1])
 @pytest.mark.parametrize('late_sec', [(0.0002, 0.0), BUSY])
 def test_a_speed_off_by_four_percent_fails_on_the_wall_clock(off, late_sec):
