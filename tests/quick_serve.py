@@ -100,7 +100,7 @@ def without_rooms() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         stand_in(look, patch)
         patch.setattr(Here, 'require_isolation', lambda self, **_: True)
-        patch.setattr(reuse, 'machinery', lambda: 'the same code')  # the real hash takes long
+        patch.setattr(reuse, 'software_hash', lambda: 'the same code')  # the real hash takes long
         yield
 
 

@@ -89,4 +89,4 @@ def stand_in(log: Path) -> None:
         return Execution(notebook=notebook, verdicts=(), notes=())
 
     stand_in_for_rooms(look, pytest.MonkeyPatch())
-    reuse.machinery = lambda: 'the same code'  # hashing all that is installed takes long
+    reuse.software_hash = lambda: 'the same code'  # hashing all that is installed takes long

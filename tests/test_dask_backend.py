@@ -30,9 +30,9 @@ ANSWERS = {'ada': RIGHT, 'bob': WRONG, 'eve': RIGHT, 'kim': WRONG, 'zoe': RIGHT}
 
 
 @pytest.fixture(autouse=True)
-def machinery(monkeypatch):
+def software_hash(monkeypatch):
     """What toy_dask_worker.py reports about itself."""
-    monkeypatch.setattr(dask_backend, 'machinery', lambda: f'toy, numpy {version("numpy")}')
+    monkeypatch.setattr(dask_backend, 'software_hash', lambda: f'toy, numpy {version("numpy")}')
 
 
 @pytest.fixture(scope='module')

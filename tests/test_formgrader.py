@@ -41,7 +41,7 @@ def course(tmp_path, monkeypatch):
         return Execution(notebook=executed(notebook, {}), verdicts=(), notes=())
 
     stand_in(look, monkeypatch)
-    monkeypatch.setattr(reuse, 'machinery', lambda: 'the same code')  # hashing it takes long
+    monkeypatch.setattr(reuse, 'software_hash', lambda: 'the same code')  # hashing it takes long
     course = Course.at(tmp_path / 'course')
     for part in ('solutions', 'notebooks'):
         shutil.copytree(ROOT / part / LESSON, course.root / part / LESSON)

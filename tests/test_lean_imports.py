@@ -143,6 +143,6 @@ def test_checksums_of_another_version_of_the_grader_are_not_used(tmp_path, monke
     path.write_text(json.dumps(kept | {'checksums': {'double': 'from another one'}}))
     assert checksums(course, TOY) == {'double': 'from another one'}
     monkeypatch.setattr(
-        'grader.storage.lesson_checksums.machinery', lambda: 'another version of the grader'
+        'grader.storage.lesson_checksums.software_hash', lambda: 'another version of the grader'
     )
     assert checksums(course, TOY) == kept['checksums']

@@ -70,7 +70,7 @@ def course(released, tmp_path, monkeypatch, run_now):
         return Execution(notebook=executed(notebook, reasons), verdicts=(), notes=())
 
     stand_in(look, monkeypatch)
-    monkeypatch.setattr(reuse, 'machinery', lambda: 'the same code')  # hashing it takes long
+    monkeypatch.setattr(reuse, 'software_hash', lambda: 'the same code')  # hashing it takes long
     shutil.copytree(released.root, tmp_path / 'course')
     return Course.at(tmp_path / 'course')
 

@@ -13,7 +13,7 @@ import rclpy
 from my_robot_basics.feedback import rclpy_names
 from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
-from my_robot_basics.graph import raised
+from my_robot_basics.graph import stop_reasons
 from my_robot_basics.live.wrong_arguments import how_to_make
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.trouble import describe_cell_error
@@ -365,10 +365,12 @@ def test_feedback_of_another_type_is_explained_with_its_constructor(run):
 
 
 def test_a_check_adds_the_constructor_to_the_exception_of_a_callback(monkeypatch):
-    monkeypatch.setattr(raised.node_troubles, 'last_raised', lambda name: 'TypeError (line 3)')
+    monkeypatch.setattr(
+        stop_reasons.node_troubles, 'last_raised', lambda name: 'TypeError (line 3)'
+    )
     kind = '', 'SolveIK.Request(target=…)'
-    monkeypatch.setattr(raised.node_troubles, 'unpublished_field', lambda name: kind)
+    monkeypatch.setattr(stop_reasons.node_troubles, 'unpublished_field', lambda name: kind)
     wanted = ', so what you give it has to be made with `SolveIK.Request(target=…)`'
-    assert raised.what_raised(['/client']).replace('\u2068', '').replace('\u2069', '') == (
+    assert stop_reasons.what_raised(['/client']).replace('\u2068', '').replace('\u2069', '') == (
         f'its callback raised TypeError (line 3){wanted}'
     )

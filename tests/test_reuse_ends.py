@@ -74,7 +74,7 @@ def another_stub(course, monkeypatch):
 
 
 def other_machinery(course, monkeypatch):
-    monkeypatch.setattr(reuse, 'machinery', lambda: 'another rclpy')
+    monkeypatch.setattr(reuse, 'software_hash', lambda: 'another rclpy')
 
 
 def no_sandbox(course, monkeypatch):

@@ -124,7 +124,7 @@ def test_a_wrong_score_is_found(tmp_path, monkeypatch):
         return Execution(notebook=executed(notebook, reasons), verdicts=(), notes=())
 
     stand_in(look, monkeypatch)
-    monkeypatch.setattr(reuse, 'machinery', lambda: 'the same code')  # hashing it takes long
+    monkeypatch.setattr(reuse, 'software_hash', lambda: 'the same code')  # hashing it takes long
     papers = synthetic_class(2, samples=names, seed=2)
     assert {paper.sample for paper in papers} == set(names)
     course = Course(gradebook=tmp_path)

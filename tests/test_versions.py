@@ -29,13 +29,13 @@ def machine(tmp_path, monkeypatch):
     monkeypatch.setattr(versions.sysconfig, 'get_path', {'purelib': str(packages)}.get)
 
     def now():
-        versions.machinery.cache_clear()
-        return versions.machinery()
+        versions.software_hash.cache_clear()
+        return versions.software_hash()
 
     yield SimpleNamespace(
         grader=grader, robot=robot, packages=packages, now=now, patch=monkeypatch
     )
-    versions.machinery.cache_clear()
+    versions.software_hash.cache_clear()
 
 
 def grader_code(machine):

@@ -12,5 +12,5 @@ from grader.workers import dask_worker, workers
 
 workers.COMMAND = (sys.executable, str(Path(__file__).with_name('toy_worker.py')))
 dask_worker.versions = lambda: {'numpy': os.environ.get('TOY_NUMPY', version('numpy'))}
-dask_worker.machinery = lambda: f'toy, numpy {dask_worker.versions()["numpy"]}'
+dask_worker.software_hash = lambda: f'toy, numpy {dask_worker.versions()["numpy"]}'
 dask_worker.missing_protection = lambda: os.environ.get('TOY_MISSING', '')

@@ -23,7 +23,7 @@ class UnpackLimits:
             min(files, self.files), min(bytes, self.bytes), min(bytes, self.tar_bytes)
         )
 
-    def less(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
+    def subtract_used(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
         """Subtract what was used of a part."""
         self.files -= part.files - left.files
         self.bytes -= part.bytes - left.bytes

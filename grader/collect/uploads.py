@@ -124,7 +124,7 @@ class _Opener:
                 yield from self.read_in_process(
                     'unpack_nested', each, name, aside, part, LIMITS_OF_ONE
                 )
-                left.less(before, part)
+                left.subtract_used(before, part)
                 each.readable.unlink()
 
     def read_in_process(
@@ -164,7 +164,7 @@ class _Opener:
             before = replace(part)
             for inner in self.unpack_one(each, each.parts[-1], aside, part):
                 yield from self.unpack_nested(inner, aside, part, nested=nested + 1)
-            left.less(before, part)
+            left.subtract_used(before, part)
 
     def unpack_one(
         self, outer: Incoming, name: str, aside: Path, left: UnpackLimits

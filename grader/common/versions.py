@@ -23,12 +23,12 @@ def versions() -> dict[str, str]:
         'Python': platform.python_version(),
         'system': f'{platform.system()} {platform.release()}',
         **{name: version(name) for name in REPORTED},
-        'grader and my_robot_basics': machinery()[:12],
+        'grader and my_robot_basics': software_hash()[:12],
     }
 
 
 @cache
-def machinery() -> str:
+def software_hash() -> str:
     """Return a hash of the grader's code, my_robot_basics and everything that is installed."""
     text = hashlib.sha256(f'{platform.python_version()} {platform.machine()}'.encode())
     for distribution in sorted(_installed(sysconfig.get_path('purelib'))):

@@ -6,7 +6,7 @@ import json
 from nbformat import NotebookNode
 
 from grader.common.files import write_whole
-from grader.common.versions import machinery
+from grader.common.versions import software_hash
 from grader.course import Course
 from grader.notebook.restore import grade_id
 from grader.storage.pipeline import apply_preprocessors, resources_of
@@ -54,4 +54,4 @@ def _source_digest(course: Course, assignment: str) -> str:
         lesson = course.source_path(assignment).read_bytes()
     except OSError:
         return ''  # reading the lesson raises the reason
-    return hashlib.sha256(f'{machinery()}\n'.encode() + lesson).hexdigest()
+    return hashlib.sha256(f'{software_hash()}\n'.encode() + lesson).hexdigest()

@@ -8,7 +8,7 @@ import nbformat
 from my_robot_basics.validate.verdict import SCORED
 from nbformat import NotebookNode
 
-from grader.common.versions import machinery
+from grader.common.versions import software_hash
 from grader.course import Course
 from grader.notebook.own_notebooks import parse_own_notebook
 from grader.notebook.restore import KEY, grade_id, role
@@ -30,7 +30,7 @@ def conditions_digest(course: Course, assignment: str, *, isolated: bool) -> str
         _cells_without_outputs(course.source(assignment)),
         _cells_without_outputs(course.release(assignment)),
     ]
-    return _digest(json.dumps([lesson, isolated, machinery()], sort_keys=True).encode())
+    return _digest(json.dumps([lesson, isolated, software_hash()], sort_keys=True).encode())
 
 
 def key_of(submission: Submission, given: str, *, seed: str) -> str:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, Self
 
 from grader.common.errors import ClusterError, TaskFailed
-from grader.common.versions import machinery, versions
+from grader.common.versions import software_hash, versions
 from grader.judging.task import GradingTask, Result, pack, unpack
 from grader.workers.dask_client import CONNECT_TIMEOUT_SEC, Certificates, check_address, connect
 
@@ -66,7 +66,7 @@ class Cluster:
         from grader.workers import dask_worker  # imports Dask, which is not needed on one machine
 
         work: Future[Result] = Future()
-        asked = self._client.submit(dask_worker.grade, pack(task), machinery(), pure=False)
+        asked = self._client.submit(dask_worker.grade, pack(task), software_hash(), pure=False)
         self._asked[asked] = work
         asked.add_done_callback(lambda done: self._set_result(done, task))
         return work
@@ -109,7 +109,7 @@ class Cluster:
                     f"the worker {address} can't grade: {type(said).__name__}: {said}. {_START}"
                 )
             about = json.loads(said)
-            if about['missing'] or about['machinery'] != machinery():
+            if about['missing'] or about['software_hash'] != software_hash():
                 raise ClusterError(f'the worker {address} {_difference(about)}')
             capacity += about['capacity']
         if not capacity:

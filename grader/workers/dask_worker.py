@@ -9,7 +9,7 @@ from functools import cache
 from distributed import Worker, get_worker
 
 from grader.common.errors import TaskFailed
-from grader.common.versions import machinery, versions
+from grader.common.versions import software_hash, versions
 from grader.kernels.isolation import missing_protection
 from grader.sandbox.limits import IN_FLIGHT_EACH
 from grader.workers.workers import Workers
@@ -26,11 +26,11 @@ async def describe(dask_worker: Worker) -> str:
 def grade(text: str, wanted: str) -> str:
     """Grade a packed task; return its result as JSON.
 
-    If this worker's `machinery` is not `wanted`, or it has no sandbox, return why it refuses.
+    If this worker's `software_hash` is not `wanted`, or it has no sandbox, return why it refuses.
     """
     in_flight = get_worker().state.nthreads
     about = json.loads(_description(in_flight))
-    if about['machinery'] != wanted or about['missing']:
+    if about['software_hash'] != wanted or about['missing']:
         return json.dumps({'refused': about})
     try:
         return _workers(in_flight).submit_text(text).result()
@@ -52,7 +52,7 @@ def _description(in_flight: int) -> str:
     with _once:
         return json.dumps(
             {
-                'machinery': machinery(),
+                'software_hash': software_hash(),
                 'versions': versions(),
                 'missing': missing_protection(),
                 'capacity': _workers(in_flight).capacity,

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.graph import graphs
-from my_robot_basics.graph.raised import what_ended_a_thread, what_raised, what_stopped
+from my_robot_basics.graph.stop_reasons import what_ended_a_thread, what_raised, what_stopped
 from my_robot_basics.graph.watcher import Watcher
 
 ENDED = (

@@ -13,7 +13,7 @@ from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.exchange.asking import wait_for_turn
 from my_robot_basics.feedback.errors import CheckFailed, Starved
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.stop_reasons import what_raised
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 

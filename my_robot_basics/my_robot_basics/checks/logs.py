@@ -7,7 +7,7 @@ from my_robot_basics.checks import angles, answers, pairing
 from my_robot_basics.checks.angles import HOW, IN_REACH
 from my_robot_basics.checks.node_log import NodeLog
 from my_robot_basics.feedback.errors import fail
-from my_robot_basics.graph.raised import what_stopped
+from my_robot_basics.graph.stop_reasons import what_stopped
 
 EXTRA_SEC = 0.3
 """How long after a warning angles may still come, in seconds."""

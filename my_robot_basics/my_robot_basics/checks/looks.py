@@ -13,7 +13,7 @@ from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import TopicEndpoints
 from my_robot_basics.feedback.errors import CheckFailed, Disturbed, expect, fail
 from my_robot_basics.feedback.hidden import is_in_test_room
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.stop_reasons import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 LATE_SEC = 0.02

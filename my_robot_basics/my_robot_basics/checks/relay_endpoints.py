@@ -21,8 +21,8 @@ from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.qos_compatibility import hint_to_omit, incompatible_policies, qos_text
-from my_robot_basics.graph.raised import what_raised, what_stopped
 from my_robot_basics.graph.snapshot import GraphSnapshot
+from my_robot_basics.graph.stop_reasons import what_raised, what_stopped
 from my_robot_basics.graph.watcher import Watcher
 
 TIMEOUT_SEC = 10.0

@@ -12,7 +12,7 @@ from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topic_endpoints import DISCOVERY_SEC, TopicEndpoints
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph import earlier_waits
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.stop_reasons import what_raised
 from my_robot_basics.graph.watcher import Watcher
 
 ONCE_MORE_SEC = 2.0

@@ -8,7 +8,7 @@ from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import shorten
-from my_robot_basics.graph.raised import what_raised
+from my_robot_basics.graph.stop_reasons import what_raised
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 

@@ -82,8 +82,8 @@ def _unpublished_field(node_name: str) -> tuple[str, str]:
 
 def _how_answer_ended(_: str) -> tuple[str, str, str]:
     """Return the class of the answer if its node was ended, what took its place, and its name."""
-    ended = sys.modules.get('my_robot_basics.live.ended')
-    return ended.how_answer_ended() if ended else ('', '', '')
+    answer_end = sys.modules.get('my_robot_basics.live.answer_end')
+    return answer_end.how_answer_ended() if answer_end else ('', '', '')
 
 
 def _blocking_line(node_name: str) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.not_running import why_not_running
-from my_robot_basics.graph.raised import what_stopped
+from my_robot_basics.graph.stop_reasons import what_stopped
 
 PLUMBING = ('/clock', '/parameter_events', '/rosout')
 """Topics that rclpy itself uses in every node, whatever the node's author wrote."""

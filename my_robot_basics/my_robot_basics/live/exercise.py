@@ -6,7 +6,7 @@ from typing import Any
 import psutil
 from rclpy.node import Node
 
-from my_robot_basics.live import course_nodes, ended, outdated, runner, troubles
+from my_robot_basics.live import answer_end, course_nodes, outdated, runner, troubles
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
@@ -23,7 +23,7 @@ def reset(*names: str) -> None:
     """
     runner.shut_down()
     troubles.forget_all()
-    ended.watch_answer('')
+    answer_end.watch_answer('')
     if classroom.in_grading_room():
         course_nodes.refuse_course_nodes_for_good()
     _started_before.clear()
@@ -57,7 +57,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'expected your own {name}, saw that of {answer.__module__}: {where}')
     if taken := course_nodes.course_part_of(answer):
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
-    ended.watch_answer(answer.__name__)
+    answer_end.watch_answer(answer.__name__)
     outdated.watch()
     with course_nodes.refuse_course_nodes():
         node = runner.run(answer, *args, **kwargs)

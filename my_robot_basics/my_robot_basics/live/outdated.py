@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 from my_robot_basics.checks.tick import is_check
-from my_robot_basics.live import ended
+from my_robot_basics.live import answer_end
 from my_robot_basics.session import kernel
 from my_robot_basics.session.errors import tell
 from my_robot_basics.session.neighbours import nodes_here
@@ -20,7 +20,7 @@ def watch() -> None:
 
 
 def _after_cell(result: Any) -> None:
-    name = ended.running_answer()
+    name = answer_end.running_answer()
     if name and is_check(result.info.raw_cell or '') and _is_of_an_earlier_class(name):
         tell(
             f'the node that was checked is from before {name} was changed: run the cell with '

@@ -12,9 +12,9 @@ from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
 from my_robot_basics.live import (
     action_types,
+    answer_end,
     child_loggers,
     commands,
-    ended,
     executables,
     harmless_errors,
     interrupting,
@@ -70,13 +70,13 @@ def launch(
     """Do the same as `run` with another panel, which is created after stdout is redirected."""
     __tracebackhide__ = True
     _stop_keys([key, *(k for k, background in _running.items() if not background.alive)])
-    ended.note_restart(key)
+    answer_end.note_restart(key)
     ensure_rclpy()
     panel = make_panel()
 
     def on_name(name: str) -> None:
         same = [k for k, b in _running.items() if b.node.get_fully_qualified_name() == name]
-        _stop_keys(ended.note_end(same, (key, name)))
+        _stop_keys(answer_end.note_end(same, (key, name)))
         if _neighbours.has_node(name):
             raise _NotStartedByLive(name)
         panel.listen(name)
@@ -120,7 +120,7 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
     latter, it is printed how each has ended.
     """
     if key_or_node is None:
-        _stop_keys(ended.note_end(_running))
+        _stop_keys(answer_end.note_end(_running))
         commands.stop_commands()
         executables.stop_started()
         return
@@ -128,7 +128,7 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
     if not keys:
         name = getattr(key_or_node, '__name__', repr(key_or_node))
         tell(f'nothing to stop: no node runs as {name}')
-    _stop_keys(ended.note_end(keys))
+    _stop_keys(answer_end.note_end(keys))
 
 
 def _stop_keys(keys: list[str]) -> None:
