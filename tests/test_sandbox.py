@@ -1,6 +1,7 @@
 """What student code finds in its room, and what it can't reach or change from there."""
 
 import contextlib
+import errno
 import os
 import socket
 import subprocess
@@ -217,6 +218,28 @@ def test_system_calls_and_sockets_that_are_not_allowed_are_refused(shared_sandbo
     assert sockets <= {
         (family, protocol) for family, all_ in PROTOCOLS.items() for protocol in all_
     }
+
+
+LEASES = """
+import fcntl, os, sys
+own = '/tmp/leased'
+open(own, 'w').close()
+for path in own, f'{sys.prefix}/pyvenv.cfg':
+    file = os.open(path, os.O_RDONLY)
+    for kind in fcntl.F_RDLCK, fcntl.F_WRLCK:
+        try:
+            fcntl.fcntl(file, fcntl.F_SETLEASE, kind)
+            print('taken')
+        except OSError as error:
+            print(error.errno)
+    os.close(file)
+"""
+"""A lease on a file makes every other program that opens it wait for 45 s. Linux gives one to
+the file's owner, even if the file is mounted read-only."""
+
+
+def test_no_lease_on_a_file_can_be_taken_in_a_room(shared_sandbox, inside):
+    assert inside(shared_sandbox, LEASES).split() == [str(errno.EPERM)] * 4
 
 
 ORDINARY_PROGRAM = """

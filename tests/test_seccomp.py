@@ -120,6 +120,16 @@ def test_another_seccomp_filter_may_be_added_only_with_a_listener():
     assert {outcome(ALLOWED['seccomp'], 1, flags) for flags in (0, 1, 9, 16)} == {EPERM}
 
 
+SET_LEASE, GET_LEASE, NOTIFY = 1024, 1025, 1026
+
+
+def test_fcntl_can_neither_take_a_lease_on_a_file_nor_watch_a_folder():
+    fcntl = ALLOWED['fcntl']
+    assert {outcome(fcntl, 3, command) for command in (SET_LEASE, NOTIFY)} == {EPERM}
+    others = {*range(41), GET_LEASE, *range(1027, 1050)}
+    assert {outcome(fcntl, 3, command) for command in others} == {ALLOW}
+
+
 PRIVATE, SHARED, VALIDATED, ANONYMOUS = 0x02, 0x01, 0x03, 0x20
 
 
