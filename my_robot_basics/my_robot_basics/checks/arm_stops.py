@@ -43,11 +43,7 @@ def expect_on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose, *, start:
     elif is_near(seen, position):
         hint = _why_at_the_goal(sent, position)
     elif not _is_between(seen, start, position):
-        hint = 'put in where the arm was stopped, on its way, in radians'
-        if _is_between(seen[::-1], start, position):
-            hint = SWAPPED
-        elif _is_between([math.radians(each) for each in seen], start, position):
-            hint = 'these are degrees: all positions of MoveArm are in radians'
+        hint = _why_beside(seen, start, position)
     if hint:
         fail(
             expected='where the arm was stopped in the result',
@@ -57,13 +53,36 @@ def expect_on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose, *, start:
         )
 
 
+def _why_beside(seen: Sequence[float], start: Pose, position: Pose) -> str:
+    """Advice for a position that is not on the way, by the mistake it looks like."""
+    if _is_between(seen[::-1], start, position):
+        return SWAPPED
+    if not _is_far_joint_between(seen, start, position) and _is_between(
+        [math.radians(each) for each in seen], start, position
+    ):
+        return 'these are degrees: all positions of MoveArm are in radians'
+    first, second = seen
+    if _is_between([-first, second], start, position):
+        return 'the sign of joint1 is wrong'
+    if _is_between([first, -second], start, position):
+        return 'the sign of joint2 is wrong'
+    return 'put in where the arm was stopped, on its way, in radians'
+
+
 def _is_between(seen: Sequence[float], start: Pose, goal: Pose) -> bool:
     """Whether each joint is on its way, and the one with the longest way at neither end of it."""
     ways = [b - a for a, b in zip(start, goal, strict=True)]
     parts = [(each - a) / way for each, a, way in zip(seen, start, ways, strict=True) if way]
+    return _is_far_joint_between(seen, start, goal) and all(
+        -ON_LINE < each < 1.0 + ON_LINE for each in parts
+    )
+
+
+def _is_far_joint_between(seen: Sequence[float], start: Pose, goal: Pose) -> bool:
+    """Whether the joint with the longest way is on it; in degrees, it would be far beyond it."""
+    ways = [b - a for a, b in zip(start, goal, strict=True)]
     joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
-    part = (seen[joint] - start[joint]) / ways[joint]
-    return 0.0 < part < 1.0 and all(-ON_LINE < each < 1.0 + ON_LINE for each in parts)
+    return 0.0 < (seen[joint] - start[joint]) / ways[joint] < 1.0
 
 
 def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:

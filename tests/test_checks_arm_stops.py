@@ -1,0 +1,41 @@
+"""What a check reads from the result of a cancelled goal, with made-up positions."""
+
+from types import SimpleNamespace
+
+import pytest
+from my_robot_basics.checks.arm_stops import expect_on_the_way
+from my_robot_basics.feedback.errors import CheckFailed
+
+from arm_interfaces.action import MoveArm
+
+GOAL = (1.2, -0.6)
+
+
+def hint(*position):
+    """Return why a goal from (0, 0) to GOAL can't have been stopped there; '' if it can."""
+    sent = SimpleNamespace(result=MoveArm.Result(position=position), feedback=list, sent_ns=0)
+    arm = SimpleNamespace(server=SimpleNamespace(log=SimpleNamespace(raised=lambda since_ns: '')))
+    try:
+        expect_on_the_way(arm, sent, GOAL, start=(0.0, 0.0))
+    except CheckFailed as failure:
+        return str(failure)
+    return ''
+
+
+@pytest.mark.parametrize(
+    ('position', 'why'),
+    [
+        ((0.49, -0.245), ''),
+        ((0.49, 0.245), 'the sign of joint2 is wrong'),
+        ((-0.49, -0.245), 'the sign of joint1 is wrong'),
+        ((28.07, -14.04), 'these are degrees'),
+        ((-0.245, 0.49), 'the joints are swapped'),
+        ((0.49, -2.0), 'put in where the arm was stopped'),
+        ((1.2, -0.6), 'put in where the arm is, not where it was to go'),
+        ((), 'fill in the result of a goal that was cancelled'),
+    ],
+)
+def test_a_result_that_is_not_on_the_way_is_named_by_its_mistake(position, why):
+    found = hint(*position)
+    assert why in found
+    assert bool(found) == bool(why)
