@@ -350,3 +350,21 @@ def test_each_wrong_goal_has_exactly_one_fault():
                 ),
             ]
             assert sum(faults) == 1
+
+
+def test_wrong_goals_with_a_hint_of_their_own_come_after_angles_above_the_limits():
+    limits = math.pi / 2, math.pi / 1.5
+    for seed in range(50):
+        goals = [list(wrong.position) for wrong in moves.choose_wrong(random.Random(seed))]
+        above = [i for i, p in enumerate(goals) if len(p) == 2 and is_above(p, limits)]
+        below = [
+            i for i, p in enumerate(goals) if len(p) == 2 and is_above([-q for q in p], limits)
+        ]
+        turned = [i for i, p in enumerate(goals) if any(abs(q) > math.pi for q in p)]
+        assert len(turned) == 1
+        assert len(set(above) - set(turned)) == len(set(below) - set(turned)) == 2
+        assert max(set(above) - set(turned)) < min(set(below) - set(turned)) < turned[0]
+
+
+def is_above(position, limits):
+    return any(limit < angle for angle, limit in zip(position, limits, strict=True))

@@ -123,6 +123,14 @@ def _why_wrong(wrong: MoveArm.Goal) -> str:
         )
     if wrong.speed <= 0.0:
         return 'reject a goal whose speed is not above 0'
+    if all(
+        abs(math.remainder(angle, math.tau)) <= limit
+        for angle, limit in zip(wrong.position, LIMITS_RAD, strict=True)
+    ):
+        return (
+            'compare each angle as the goal has it: one that is a whole turn away is out of '
+            'range, too'
+        )
     if all(angle <= limit for angle, limit in zip(wrong.position, LIMITS_RAD, strict=True)):
         return (
             'there is a limit on both sides: compare the size of each angle, abs(…), with its '

@@ -48,14 +48,15 @@ def choose(numbers: random.Random, *, farther: int = 1, sign: int = 1) -> tuple[
 def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
     """Choose goals that the server must reject, each with exactly one fault.
 
-    The faults: out of range, a wrong number of angles, NaN, and a speed that is not above 0.
+    The faults: out of range, also by a whole turn; a wrong number of angles, NaN, and a speed that
+    is not above 0.
     """
     inside = choose(numbers)
     first, second = LIMITS_RAD
     beyond = BEYOND_RAD * numbers.uniform(1.0, 2.0)
     wrong = [
-        *(goal((sign * (first + beyond), inside[1])) for sign in (-1, 1)),
-        *(goal((inside[0], sign * (second + beyond))) for sign in (-1, 1)),
+        goal((first + beyond, inside[1])),
+        goal((inside[0], second + beyond)),
         goal(()),
         goal(inside[:1]),
         goal((*inside, numbers.uniform(-0.5, 0.5))),
@@ -66,7 +67,11 @@ def choose_wrong(numbers: random.Random) -> list[MoveArm.Goal]:
         goal(inside, speed=math.nan),
     ]
     numbers.shuffle(wrong)
-    return wrong
+    below = [goal((-first - beyond, inside[1])), goal((inside[0], -second - beyond))]
+    numbers.shuffle(below)
+    turned = goal((inside[0] + numbers.choice((-1, 1)) * math.tau, inside[1]))
+    # the hints for these are right only if the server rejects angles above the limits
+    return [*wrong, *below, turned]
 
 
 def choose_near_limits(numbers: random.Random) -> list[tuple[float, float]]:
