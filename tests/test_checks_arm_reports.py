@@ -91,6 +91,19 @@ def test_feedback_that_stops_before_the_end_has_a_pause():
         reported.expect_enough()
 
 
+@pytest.mark.parametrize(('copies', 'is_right'), [(2, True), (4, True), (10, False)])
+def test_feedback_may_repeat_a_position_but_not_for_long(copies, is_right):
+    times, parts = evenly(20.0)
+    told = [parts[i - i % copies] for i in range(len(parts))]
+    found = ''
+    try:
+        report(told, times, DRIVEN).expect_steady()
+    except CheckFailed as failure:
+        found = str(failure)
+    assert ('the same position is published' in found) == (not is_right)
+    assert bool(found) == (not is_right)
+
+
 WAYS = np.array([[-0.1, 0.3], [-0.2, 0.6], [-0.3, 0.9]])
 END_BELOW = -0.4, 1.2
 

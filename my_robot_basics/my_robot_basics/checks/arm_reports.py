@@ -144,6 +144,10 @@ class MoveReport:
         late_part = self.arm.time.step_ns / 1e9 / np.ptp(times)  # on a busy machine, by a step
         if np.abs(parts - steady).max() > PROGRESS_PART + late_part:
             self._fail_steady('move at one speed from start to goal, and publish each position')
+        if self._longest_same_sec() > LARGEST_GAP_SEC:
+            self._fail_steady(
+                'the same position is published for a while: compute it anew for each feedback'
+            )
 
     def expect_remaining(self) -> None:
         """Expect the right `remaining` in each message. Raises CheckFailed."""
@@ -156,6 +160,12 @@ class MoveReport:
             return 1.0 / max(periods.intended_period(self.times), 1e-9)
         count = len(self.times)
         return min((count - 1) / max(np.ptp(self.times), 1e-9), count / seconds)
+
+    def _longest_same_sec(self) -> float:
+        """For how long feedback told one position before it told another, in seconds."""
+        positions = self._positions()
+        is_new = np.array([True, *np.any(np.diff(positions, axis=0) != 0.0, axis=1)])
+        return float(np.diff(self.times[is_new]).max(initial=0.0))
 
     def _positions(self) -> np.ndarray:
         return np.array([list(message.position) for message in self.messages])
