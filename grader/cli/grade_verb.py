@@ -20,6 +20,7 @@ from grader.storage.deadlines import extended_for_nobody
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
 
+_NOT_STORED = 'Nothing was stored; --store stores it.'
 _BY_HAND = 'points by hand (.venv/bin/jupyter lab, menu Nbgrader, Formgrader), '
 
 
@@ -101,5 +102,6 @@ def _replay(
         print(line, flush=True)
         same &= as_stored
     print('The same as in the gradebook.' if same else 'NOT the same as in the gradebook.')
-    print('Nothing was stored; --store stores it.')
+    # recorded seeds give the stored scores, and --store refuses them
+    print('Nothing was stored.' if asked.seed == RECORDED else _NOT_STORED)
     return 0 if same else 1
