@@ -113,6 +113,13 @@ def test_every_odd_cell_becomes_a_valid_one_without_metadata_or_outputs(read, ce
 
 
 @pytest.mark.parametrize('kind', ['code', 'markdown', 'raw'])
+def test_a_cell_saved_with_crlf_has_the_text_that_was_released(read, kind):
+    for source in ('a\r\nb', ['a\r\n', 'b'], ['a\r', '\nb']):
+        (cell,) = read(notebook_text({'cell_type': kind, 'source': source})).cells
+        assert cell.source == 'a\nb'
+
+
+@pytest.mark.parametrize('kind', ['code', 'markdown', 'raw'])
 def test_only_the_grade_id_of_a_cells_metadata_is_kept(read, kind):
     marks = {'grade_id': 'five_hz', 'points': 99, 'schema_version': 1, 'solution': False}
     metadata = {

@@ -105,7 +105,8 @@ def _read_json(path: Path) -> object:
 
 def _clean_cell(cell: dict) -> dict:
     """Keep type, source, id, grade id and pasted pictures; drop outputs and other metadata."""
-    source = _text(cell.get('source', cell.get('input', '')))
+    # editors on Windows may save CRLF: a locked cell would count as changed, a stub as an answer
+    source = _text(cell.get('source', cell.get('input', ''))).replace('\r\n', '\n')
     cell_id = cell.get('id')
     metadata = {}
     nbgrader = cell.get('metadata')
