@@ -215,6 +215,17 @@ def test_a_restored_cell_is_mentioned_on_the_page(course):
     assert 'the cell <code>double-check</code> was missing: it was put back' in html
 
 
+def test_a_notebook_without_answer_cells_is_not_said_to_have_cost_no_points(course):
+    notebook = answered(course, RIGHT)
+    for cell in notebook.cells:  # as a program that removes what it does not know saves it
+        cell.metadata = {}
+    html = feedback(course, 'ada', notebook)
+    top, _, restored = html.partition('This alone cost no points')
+    assert 'Your answers were not found' in top
+    assert 'The notebook holds none of the answer cells of this assignment: ' in top
+    assert 'none of the answer cells' not in restored
+
+
 def test_a_written_answer_waits_for_the_instructor_and_is_not_scored_zero(course):
     html = feedback(course, 'ada', answered(course, RIGHT, explained='It **is** so.'))
     assert '<strong>is</strong>' in html

@@ -4,12 +4,13 @@ from datetime import UTC, datetime
 
 import pytest
 from course_maker import TOY, answered, executed, submit
+from nbformat.v4 import new_code_cell, new_notebook
 from nbgrader.api import Gradebook
 
 from grader.cli.demo import demo
 from grader.course import Course
 from grader.grading import SubmissionOutcome
-from grader.notebook.restore import restore
+from grader.notebook.restore import NO_ANSWERS, restore
 from grader.notebook.submission import read_submission
 from grader.report.report import Run, write_report
 from grader.report.statistics import WRITTEN, tally
@@ -127,6 +128,7 @@ def test_each_submission_or_check_that_needs_a_person_is_listed_with_its_reason(
         graded(course, 'bob', {'double-check': '?'}, explained=''),
         graded(course, 'eve', notebook=b'no notebook'),
         graded(course, 'zoe', {}, explained=''),
+        graded(course, 'pat', {}, notebook=new_notebook(cells=[new_code_cell(ANSWER)])),
         SubmissionOutcome('x.ipynb', '', None, 'a file where a folder was expected'),
         SubmissionOutcome('kim', TOY, None, 'not graded, the grader failed: OSError: no room'),
     ]
@@ -137,9 +139,10 @@ def test_each_submission_or_check_that_needs_a_person_is_listed_with_its_reason(
     ]
     assert looks[-1].words == WRITTEN
     whole = {each.students: each.words for each in looks if not each.checks}
-    assert whole.keys() == {('eve',), ('kim',), ('x.ipynb',)}
+    assert whole.keys() == {('eve',), ('pat',), ('kim',), ('x.ipynb',)}
     assert whole['eve',].startswith('unreadable, so it earned nothing: 00_toy.ipynb is not JSON')
-    assert (whole['x.ipynb',], whole['kim',]) == (rows[4].reason, rows[5].reason)
+    assert whole['pat',] == NO_ANSWERS
+    assert (whole['x.ipynb',], whole['kim',]) == (rows[5].reason, rows[6].reason)
 
 
 def test_submissions_that_wait_for_the_same_reason_share_one_line(course):

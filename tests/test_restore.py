@@ -278,8 +278,9 @@ STRANGE = new_code_cell('', metadata={'nbgrader': {'grade_id': 'other'}})
 def test_the_first_note_reports_a_notebook_without_answer_cells(template, cells):
     restored = restore(new_notebook(cells=cells), template)
     assert_whole(restored, template)
-    first = restored.notes[0]
-    assert first == 'the notebook holds none of the answer cells of this assignment'
+    what, _, advice = restored.notes[0].partition(': ')
+    assert what == 'the notebook holds none of the answer cells of this assignment'
+    assert 'save it in JupyterLab, and submit that file' in advice
 
 
 def test_attachments_of_a_manual_answer_are_kept(submitted, template):

@@ -10,7 +10,11 @@ from my_robot_basics.language.speaking import LANGUAGE, language_of
 from my_robot_basics.validate.cells import KEY, grade_id, role, roles, title_of
 from nbformat import NotebookNode
 
-NO_ANSWERS = 'the notebook holds none of the answer cells of this assignment'
+NO_ANSWERS = (
+    'the notebook holds none of the answer cells of this assignment: it is another notebook, or a '
+    "program has removed nbgrader's metadata from its cells. Write your answers into the notebook "
+    'of this lesson that you were given, save it in JupyterLab, and submit that file'
+)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from pygments.lexers import PythonLexer
 
 from grader.common.text import visible
 from grader.kernels.isolation import NO_SANDBOX
-from grader.notebook.restore import KEY
+from grader.notebook.restore import KEY, NO_ANSWERS
 from grader.report.page_parts import find_sections
 from grader.report.templates import put_markup, template
 
@@ -39,6 +39,7 @@ def render_page(as_json: dict, about: dict, plain: str = '') -> str:
     notebook = nbformat.from_dict(as_json)
     ours = notebook.metadata.get(KEY, {})
     problem = ours.get('problem', '')
+    told = [note for note in (plain, *ours.get('notes', ())) if note not in ('', problem)]
     language = language_of(notebook.metadata)
     sections, others = find_sections(notebook, language)
     return _template(language, is_plain=bool(plain)).render(
@@ -51,7 +52,9 @@ def render_page(as_json: dict, about: dict, plain: str = '') -> str:
         problem=problem,
         title=_title(ours.get('title', ''), about, language),
         no_sandbox='' if ours.get('in_sandbox', True) else NO_SANDBOX,
-        notes=[note for note in (plain, *ours.get('notes', ())) if note not in ('', problem)],
+        # it cost points, unlike what else was restored
+        no_answers=NO_ANSWERS if NO_ANSWERS in told else '',
+        notes=[note for note in told if note != NO_ANSWERS],
     )
 
 

@@ -10,7 +10,7 @@ from nbformat import NotebookNode
 
 from grader.course import Course
 from grader.grading import SubmissionOutcome
-from grader.notebook.restore import KEY, grade_id
+from grader.notebook.restore import KEY, NO_ANSWERS, grade_id
 from grader.report.message_groups import CellMessage, Reason, group_messages
 from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
 
@@ -94,10 +94,13 @@ class _VerdictsOfOne:
 
     problem: str
     verdicts: dict[str, dict]
+    lost_answers: bool
 
 
 def _verdicts_of(graded: NotebookNode) -> _VerdictsOfOne:
-    return _VerdictsOfOne(graded.metadata.get(KEY, {}).get('problem') or '', verdicts_in(graded))
+    ours = graded.metadata.get(KEY, {})
+    lost = NO_ANSWERS in ours.get('notes', ())
+    return _VerdictsOfOne(ours.get('problem') or '', verdicts_in(graded), lost)
 
 
 def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
@@ -153,9 +156,7 @@ def _check(
     cells: list[CellScore], title: str | None, failures: list[CellMessage]
 ) -> CheckStatistics:
     scored = [record for record in cells if record.score is not None]
-    passed = sum(
-        record.score is not None and record.score >= record.max_score for record in scored
-    )
+    passed = sum(each.score >= each.max_score for each in cells if each.score is not None)
     return CheckStatistics(
         grade_id=cells[0].grade_id,
         title=title or '',
@@ -190,6 +191,8 @@ def _find_manual_work(
         if said.problem:
             yield CellMessage(*whose, '', f'unreadable, so it earned nothing: {said.problem}')
             continue
+        if said.lost_answers:  # an answer that was not found may be right
+            yield CellMessage(*whose, '', NO_ANSWERS)
         for record in of_cells[whose]:
             if record.score is None:
                 reason = said.verdicts.get(record.grade_id, {}).get('reason') or WRITTEN
