@@ -11,6 +11,7 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+import nbformat
 import pytest
 from course_maker import TOY, answered, executed, released_course, submit
 
@@ -20,8 +21,10 @@ from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.report.feedback import write_feedback
 from grader.report.progress_table import reason_in_a_line, score_of
-from grader.storage.gradebook import store
+from grader.storage.database import open_database
+from grader.storage.gradebook import recover, store
 from grader.storage.pipeline import sanitize_restored
+from grader.storage.records import graded_notebook
 
 TOKEN = 'a-token'
 RIGHT = 'def double(x):\n    return 2 * x'
@@ -164,3 +167,80 @@ def test_points_given_in_the_formgrader_are_kept_by_a_regrade(course, formgrader
     assert '✎ scored by hand' in html
     assert '1.5 of 2' in html
     assert 'Twice of what?' in html
+
+
+def give_points(course, student, points):
+    """Give a person's points for the written answer."""
+    with open_database(course.db_url) as book:
+        found = book.find_grade('explain', TOY, TOY, student)
+        found.manual_score, found.needs_manual_grade = points, False
+        book.db.commit()
+
+
+@pytest.mark.parametrize('again', [BECAUSE, f'\n{BECAUSE}  \n'], ids=['same', 'more space'])
+def test_points_given_by_hand_stay_for_an_unchanged_answer(course, again):
+    grade(course, 'cleo', BECAUSE)
+    give_points(course, 'cleo', 1.5)
+    assert score_of(grade(course, 'cleo', again)) == '4.5/5'
+    assert exported(course, 'cleo') == ('1.5', 'scored by hand')
+
+
+def test_a_rewritten_answer_waits_for_points_again(course):
+    """It had the points of its earlier text, and nothing said that nobody had read it."""
+    grade(course, 'dora', BECAUSE)
+    give_points(course, 'dora', 1.5)
+    row = grade(course, 'dora', 'I do not know.')
+    assert (score_of(row), row.stored.former) == ('3/5 …', 4.5)
+    assert exported(course, 'dora') == (
+        '',
+        'to be graded by hand; this answer was changed after 1.5 points had been given for it by '
+        'hand: a person reads it again',
+    )
+    assert 'changed after 1.5 points' in page(course, 'dora')
+    give_points(course, 'dora', 0.5)
+    assert exported(course, 'dora') == ('0.5', 'scored by hand')
+    assert 'changed after' not in page(course, 'dora')
+
+
+def test_a_result_that_is_stored_again_keeps_the_points_of_a_rewritten_answer(course):
+    grade(course, 'emil', BECAUSE)
+    give_points(course, 'emil', 1.5)
+    grade(course, 'emil', 'I do not know.')
+    give_points(course, 'emil', 0.5)
+    folder = course.folder('submitted', 'emil', TOY)
+    submission = read_submission(folder, student_id='emil', assignment=TOY)
+    store(course, submission, graded_notebook(course, 'emil', TOY))  # as a kept result
+    assert exported(course, 'emil') == ('0.5', 'scored by hand')
+
+
+def test_a_removed_answer_loses_the_points_that_it_was_given(course):
+    grade(course, 'finn', BECAUSE)
+    give_points(course, 'finn', 1.5)
+    row = grade(course, 'finn', '')
+    assert (score_of(row), reason_in_a_line(row)) == ('3/5', '(was 4.5) there is no answer')
+    assert exported(course, 'finn') == ('0.0', 'there is no answer')
+
+
+def test_points_stay_if_nothing_shows_what_the_answer_was(course):
+    grade(course, 'gina', BECAUSE)
+    give_points(course, 'gina', 1.5)
+    (course.folder('autograded', 'gina', TOY) / f'{TOY}.ipynb').write_text('damaged')
+    assert score_of(grade(course, 'gina', 'Another text.')) == '4.5/5'
+
+
+def test_a_killed_run_forgets_no_points_of_a_rewritten_answer(course, monkeypatch):
+    """`recover` stores it once more, when the database knows nothing of the earlier points."""
+    grade(course, 'hugo', BECAUSE)
+    give_points(course, 'hugo', 1.5)
+
+    def fail(*_):
+        raise OSError('the disk is full')
+
+    with monkeypatch.context() as killed:
+        killed.setattr(nbformat.v4, 'writes', fail)
+        with pytest.raises(OSError, match='the disk is full'):
+            grade(course, 'hugo', 'I do not know.')
+    recover(course)
+    score, comment = exported(course, 'hugo')
+    assert not score
+    assert 'after 1.5 points' in comment

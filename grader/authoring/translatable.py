@@ -52,6 +52,7 @@ MODULES = {
         'grader/report/page*.py',
         'grader/report/statistics.py',
         'grader/report/similar_answers.py',
+        'grader/storage/rewritten_answers.py',
         'grader/storage/save_grades.py',
     ],
 }

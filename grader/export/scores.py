@@ -10,6 +10,7 @@ from grader.common.text import spreadsheet_table
 from grader.course import Course
 from grader.kernels.isolation import NO_SANDBOX
 from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
+from grader.storage.rewritten_answers import reason_today
 
 COLUMNS = ('student_id', 'assignment', 'grade_id', 'score', 'max_score', 'comment')
 
@@ -56,7 +57,7 @@ def _comment(record: CellScore, verdict: dict, remark: str) -> str:
         'to be graded by hand' if record.score is None else '',
         'scored by hand' if record.by_hand else '',
         record.comment,
-        verdict.get('reason'),
+        reason_today(verdict, by_hand=record.by_hand),
         *verdict.get('notes', ()),
         remark,
     ]

@@ -9,6 +9,7 @@ from grader.course import Course
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import open_database
 from grader.storage.held_scores import held_score
+from grader.storage.rewritten_answers import reason_today
 from grader.storage.submission_rows import SubmissionRows
 
 
@@ -59,6 +60,7 @@ class GatherVerdicts(GetGrades):
         verdict = cell.metadata.setdefault(KEY, NotebookNode())
         verdict.by_hand = grade.manual_score is not None
         verdict.waits = grade.auto_score is None and not verdict.by_hand
+        verdict.reason = reason_today(verdict, by_hand=verdict.by_hand)
 
 
 def _unknown(student: str, assignment: str, resources: dict) -> str:

@@ -25,11 +25,12 @@ from grader.storage.database import (
     raise_gradebook_errors,
     wait_until_free,
 )
-from grader.storage.held_scores import held_score
+from grader.storage.held_scores import held_score, manual_scores
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import first_reason, resources_of, store_scores
 from grader.storage.registering import register, register_all
+from grader.storage.rewritten_answers import note_rewritten
 
 _JOURNAL = '.{}.ipynb.begun'
 """A journal: the executed notebook, kept in its folder until all of it is stored."""
@@ -62,10 +63,10 @@ def register_before_autograde(*, assignment: str, **_: object) -> None:
 def store(course: Course, submission: Submission, graded: NotebookNode) -> StoredResult:
     """Store an executed notebook: its scores, and the notebook itself under autograded/.
 
-    The same nbgrader preprocessors do it as in `nbgrader autograde`. Manual scores stay, the
-    submitted files are only read, and storing twice is the same as once. If the process is
-    killed, `recover` finishes it. Raises GradebookError, and changes nothing, if the disk is full
-    or the database is not available.
+    The same nbgrader preprocessors do it as in `nbgrader autograde`. Manual scores stay, unless
+    the answer was rewritten since; the submitted files are only read, and storing twice is the
+    same as once. If the process is killed, `recover` finishes it. Raises GradebookError, and
+    changes nothing, if the disk is full or the database is not available.
     """
     journal = _journal(course, submission)
     whose = submission.student_id, submission.assignment
@@ -74,6 +75,8 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
             wait_until_free(course)
             with open_database(course.db_url) as book:  # one connection for all that follows
                 former = held_score(book, *whose)
+                by_hand = manual_scores(book, *whose) if former else {}
+                note_rewritten(graded, journal.with_name(f'{whose[1]}.ipynb'), by_hand)
                 _keep_files(course, submission)
                 # with ensure_ascii=False, text that can't be encoded fails here, not half-way
                 write_whole(journal, json.dumps(graded, ensure_ascii=False))

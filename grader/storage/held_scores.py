@@ -61,6 +61,12 @@ _AUTO_SCORES = _of_one_submission(
     .join(BaseCell, BaseCell.id == Grade.cell_id)
     .join(SubmittedNotebook, SubmittedNotebook.id == Grade.notebook_id)
 )
+_MANUAL_SCORES = _of_one_submission(
+    select(BaseCell.name, Grade.manual_score)
+    .join(BaseCell, BaseCell.id == Grade.cell_id)
+    .join(SubmittedNotebook, SubmittedNotebook.id == Grade.notebook_id)
+    .where(Grade.manual_score.is_not(None))
+)
 
 
 def held_score(book: Gradebook, student_id: str, assignment: str) -> HeldScore | None:
@@ -77,3 +83,9 @@ def auto_scores(book: Gradebook, student_id: str, assignment: str) -> dict[str, 
     """Return the automatic scores of a submission, by grade id; None for a cell without one."""
     whose = {'assignment': assignment, 'student': student_id}
     return dict(book.db.execute(_AUTO_SCORES, whose).all())
+
+
+def manual_scores(book: Gradebook, student_id: str, assignment: str) -> dict[str, float]:
+    """Return the points that a person has given in a submission, by grade id."""
+    whose = {'assignment': assignment, 'student': student_id}
+    return dict(book.db.execute(_MANUAL_SCORES, whose).all())

@@ -7,6 +7,7 @@ from nbgrader.preprocessors import SaveAutoGrades
 
 from grader.notebook.restore import KEY, grade_id
 from grader.storage.database import transaction
+from grader.storage.rewritten_answers import EARLIER_POINTS
 from grader.storage.submission_rows import SubmissionRows
 
 NO_ANSWER = 'there is no answer'
@@ -43,6 +44,9 @@ class SaveGrades(SaveAutoGrades):
             grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
         )
         verdict = cell.metadata.setdefault(KEY, nbformat.from_dict({}))
+        if EARLIER_POINTS in verdict:
+            grade.manual_score = None
+            grade.needs_manual_grade = grade.auto_score is None
         if cell.cell_type == 'code' and verdict.get('outcome') not in SCORED:
             grade.auto_score, grade.needs_manual_grade = None, True
         elif cell.cell_type != 'code' and grade.auto_score is not None:

@@ -1,0 +1,48 @@
+"""Points given by hand count no more once the student has rewritten the answer."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from nbformat import NotebookNode
+
+from grader.notebook.own_notebooks import parse_own_notebook
+from grader.notebook.restore import KEY, grade_id, role
+
+EARLIER_POINTS = 'earlier_points'
+"""In the verdict of a rewritten answer: the points that its earlier text was given by hand."""
+
+
+def note_rewritten(graded: NotebookNode, former_path: Path, points: dict[str, float]) -> None:
+    """Note in the verdicts of rewritten answers which points given by hand count no more.
+
+    `former_path` is the executed notebook of the hand-in before, `points` what a person has given
+    for it, by grade id. An answer is not rewritten if only the space around it has changed. If
+    nothing shows what the earlier text was, the points stay.
+    """
+    former = _answers(former_path) if points else {}
+    for cell in graded.cells:
+        name, verdict = grade_id(cell), cell.metadata.get(KEY, {})
+        if name in points and EARLIER_POINTS in verdict:  # a kept result that was read since
+            del verdict[EARLIER_POINTS], verdict['reason']
+        if name in points and name in former and former[name] != cell.source.strip():
+            verdict[EARLIER_POINTS] = points[name]
+            verdict['reason'] = (
+                f'this answer was changed after {points[name]:g} points had been given for it by '
+                'hand: a person reads it again'
+            )
+
+
+def reason_today(verdict: Mapping[str, Any], *, by_hand: bool) -> str:
+    """Return a verdict's reason; '' if a person has read the rewritten answer since."""
+    return '' if by_hand and EARLIER_POINTS in verdict else verdict.get('reason', '')
+
+
+def _answers(path: Path) -> dict[str, str]:
+    """Return the written answers of an executed notebook, by grade id; none if it is damaged."""
+    try:
+        notebook = parse_own_notebook(path.read_text('utf-8'))
+    except (FileNotFoundError, ValueError):
+        return {}
+    answers = [cell for cell in notebook.cells if role(cell) == 'answer']
+    return {name: cell.source.strip() for cell in answers if (name := grade_id(cell))}
