@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.checks.arm_stops import expect_on_the_way
+from my_robot_basics.checks.cancel_moments import just_after_half_second
 from my_robot_basics.feedback.errors import CheckFailed
 
 from arm_interfaces.action import MoveArm
@@ -39,3 +40,19 @@ def test_a_result_that_is_not_on_the_way_is_named_by_its_mistake(position, why):
     found = hint(*position)
     assert why in found
     assert bool(found) == bool(why)
+
+
+@pytest.mark.parametrize('looks_sec', [0.5, 1.0])
+@pytest.mark.parametrize('move_sec', [2.4, 3.1, 4.7, 6.0, 14.0])
+def test_a_server_that_looks_twice_a_second_is_late_whenever_its_goal_is_cancelled(
+    looks_sec, move_sec
+):
+    """With 2.4 s of 6.0, it stopped in time by chance, and the visible check passed."""
+    asked_sec = just_after_half_second(0.4 * move_sec)
+    assert asked_sec == pytest.approx(0.4 * move_sec, abs=0.46)
+    if asked_sec > looks_sec / 2:
+        assert -asked_sec % looks_sec > 0.4
+
+
+def test_a_brief_move_is_cancelled_on_its_way():
+    assert just_after_half_second(0.3) == 0.3

@@ -15,6 +15,7 @@ from my_robot_basics.checks.elbow_up import (
     is_elbow_up,
     why_other,
 )
+from my_robot_basics.checks.heeded_message import expect_heeds_reachable
 from my_robot_basics.checks.left_over import why_left_over
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
@@ -111,7 +112,15 @@ def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
 
 
 def expect_answer(server: Server, x: float, y: float) -> None:
-    """Expect the client to request a target and publish its elbow-up pose. Raises CheckFailed."""
+    """Expect the client to request a target and publish its elbow-up pose.
+
+    It gets the target twice; the second response has a message, too. Raises CheckFailed.
+    """
+    _expect_answer(server, x, y)
+    expect_heeds_reachable(server, lambda: _expect_answer(server, x, y))
+
+
+def _expect_answer(server: Server, x: float, y: float) -> None:
     ask(server, x, y)
     expect_elbow_up(server, x, y)
 
@@ -143,7 +152,7 @@ def expect_never_blocks(
     server.stop()
     server.expect_alive('there is no server', Point(x=first[0], y=first[1]))
     server.start()
-    expect_answer(server, *third)
+    _expect_answer(server, *third)
     _let_all_be_answered(server)  # also the target without server, if the client kept it
     expect_no_others(server)
 
