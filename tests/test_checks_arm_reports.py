@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, why_off_line
 from my_robot_basics.checks.arm_remaining import expect_remaining
 from my_robot_basics.checks.arm_reports import MoveReport
 from my_robot_basics.checks.robot_time import WallTime
@@ -102,6 +103,30 @@ def test_feedback_may_repeat_a_position_but_not_for_long(copies, is_right):
         found = str(failure)
     assert ('the same position is published' in found) == (not is_right)
     assert bool(found) == (not is_right)
+
+
+LINE_BEGIN, LINE_END = (0.2, -0.1), (1.2, -0.7)
+
+
+@pytest.mark.parametrize(
+    ('begin', 'end', 'why'),
+    [
+        (LINE_BEGIN, (1.2, 0.7), 'move both joints by the same part'),
+        ((0.2, 0.1), (1.2, 0.7), 'the sign of joint2 is wrong'),
+        ((-0.2, -0.1), (-1.2, -0.7), 'the sign of joint1 is wrong'),
+        ((-0.1, 0.2), (-0.7, 1.2), 'the joints are swapped'),
+        ((0.0, 0.0), LINE_END, 'start from where the arm is'),
+    ],
+)
+def test_positions_beside_the_line_are_explained_by_the_mistake_that_they_show(begin, end, why):
+    positions = np.linspace(begin, end, 9)
+    assert off_line(positions, LINE_BEGIN, LINE_END).max() > ON_LINE_RAD
+    assert why in why_off_line(positions, LINE_BEGIN, LINE_END)
+
+
+def test_positions_on_the_line_are_not_off_it():
+    positions = np.linspace(LINE_BEGIN, LINE_END, 9)
+    assert off_line(positions, LINE_BEGIN, LINE_END).max() < 1e-9
 
 
 WAYS = np.array([[-0.1, 0.3], [-0.2, 0.6], [-0.3, 0.9]])

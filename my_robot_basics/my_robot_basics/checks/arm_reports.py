@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from my_robot_basics.checks import joints, periods
+from my_robot_basics.checks import periods
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action
+from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, why_off_line
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_remaining import expect_remaining
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
@@ -24,8 +25,6 @@ NO_WAIT = (
     'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
 )
 FEWEST = 5
-ON_LINE_RAD = 0.01
-"""How far a position may be off the straight line."""
 PROGRESS_PART = 0.06
 """How far the arm may be ahead of a steady move or behind it, as a part of the way."""
 MOST_TIMES = 3.0
@@ -121,15 +120,10 @@ class MoveReport:
         if np.ptp(positions, axis=0).max() < ON_LINE_RAD:
             hint = 'feedback holds the same position all the time: put in where the arm is now'
             self._fail_position(positions[-1], hint, 'positions on the way to the goal')
-        off = self._off_line(positions, self.arm.start)
-        if off.max() <= ON_LINE_RAD:
-            return
-        hint = 'move both joints by the same part of their ways, so that they arrive together'
-        if self._off_line(positions, (0.0,) * len(self.end)).max() <= ON_LINE_RAD:
-            hint = 'start from where the arm is, at each goal'
-        elif self._off_line(positions[:, ::-1], self.arm.start).max() <= ON_LINE_RAD:
-            hint = joints.SWAPPED
-        self._fail_position(positions[int(off.argmax())], hint, 'positions on a straight line')
+        off = off_line(positions, self.arm.start, self.end)
+        if off.max() > ON_LINE_RAD:
+            hint = why_off_line(positions, self.arm.start, self.end)
+            self._fail_position(positions[int(off.argmax())], hint, 'positions on a straight line')
 
     def expect_steady(self) -> None:
         """Expect the arm to move along the line at one speed. Raises CheckFailed."""
@@ -174,13 +168,6 @@ class MoveReport:
         ways = np.array(self.end) - np.array(self.arm.start)
         joint = int(np.abs(ways).argmax())
         return np.asarray((positions[:, joint] - self.arm.start[joint]) / ways[joint])
-
-    def _off_line(self, positions: np.ndarray, start: Sequence[float]) -> np.ndarray:
-        """How far each position is from the line that begins at `start`, in rad."""
-        begin, ways = np.array(start), np.array(self.end) - np.array(start)
-        joint = int(np.abs(ways).argmax())
-        parts = np.clip((positions[:, joint] - begin[joint]) / ways[joint], 0.0, 1.0)
-        return np.asarray(np.abs(positions - (begin + parts[:, None] * ways)).max(axis=1))
 
     def _fail_position(self, seen: Sequence[float], hint: str, expected: str) -> None:
         fail(
