@@ -177,6 +177,18 @@ def give_points(course, student, points):
         book.db.commit()
 
 
+def is_listed(course, student):
+    """Whether the formgrader lists the written answer among those to grade."""
+    with open_database(course.db_url) as book:
+        return book.find_grade('explain', TOY, TOY, student).needs_manual_grade
+
+
+def test_points_for_an_empty_answer_keep_the_reason_why_it_had_none(course):
+    grade(course, 'ivan', '')
+    give_points(course, 'ivan', 0.5)
+    assert exported(course, 'ivan') == ('0.5', 'scored by hand; there is no answer')
+
+
 @pytest.mark.parametrize('again', [BECAUSE, f'\n{BECAUSE}  \n'], ids=['same', 'more space'])
 def test_points_given_by_hand_stay_for_an_unchanged_answer(course, again):
     grade(course, 'cleo', BECAUSE)
@@ -197,6 +209,7 @@ def test_a_rewritten_answer_waits_for_points_again(course):
         'hand: a person reads it again',
     )
     assert 'changed after 1.5 points' in page(course, 'dora')
+    assert is_listed(course, 'dora')
     give_points(course, 'dora', 0.5)
     assert exported(course, 'dora') == ('0.5', 'scored by hand')
     assert 'changed after' not in page(course, 'dora')
@@ -219,6 +232,7 @@ def test_a_removed_answer_loses_the_points_that_it_was_given(course):
     row = grade(course, 'finn', '')
     assert (score_of(row), reason_in_a_line(row)) == ('3/5', '(was 4.5) there is no answer')
     assert exported(course, 'finn') == ('0.0', 'there is no answer')
+    assert not is_listed(course, 'finn')
 
 
 def test_points_stay_if_nothing_shows_what_the_answer_was(course):
