@@ -364,6 +364,18 @@ def test_feedback_of_another_type_is_explained_with_its_constructor(run):
     assert how_to_make(found[0]) == 'MoveArm.Feedback(position=…, remaining=…)'
 
 
+@pytest.mark.parametrize('state', ['SUCCEEDED', 'CANCELED', 'ABORTED'])
+@pytest.mark.parametrize('event', ['SUCCEED', 'CANCELED', 'ABORT'])
+def test_a_second_end_of_a_goal_is_explained(state, event):
+    said = f'RCLError: goal_handle attempted invalid transition from state {state} with event'
+    assert 'call only one of succeed()' in hint_for_exception(f'{said} {event}, at goal_handle.c')
+
+
+def test_an_end_before_its_request_was_accepted_is_explained():
+    said = 'RCLError: goal_handle attempted invalid transition from state EXECUTING with event'
+    assert 'after the cancel callback has returned' in hint_for_exception(f'{said} CANCELED')
+
+
 def test_a_check_adds_the_constructor_to_the_exception_of_a_callback(monkeypatch):
     monkeypatch.setattr(
         stop_reasons.node_troubles, 'last_raised', lambda name: 'TypeError (line 3)'

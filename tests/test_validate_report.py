@@ -166,3 +166,24 @@ def test_the_author_of_a_hidden_part_reads_all_of_its_failure():
     told = make_check(lesson, cell, verdict, [])
     assert told.message == f'in the part checked at grading: {full}'
     assert make_check(lesson, cell, replace(verdict, details=''), []).message == short
+
+
+@pytest.mark.parametrize(
+    ('about', 'outcome', 'expected'),
+    [
+        ({}, 'passed', 'passed'),
+        ({}, 'manual', 'not checked'),
+        ({}, 'ungraded', 'not checked'),
+        ({'altered': ('closes',)}, 'passed', 'not checked'),
+        ({'hidden': {'closes': 'all'}}, 'passed', 'at grading'),
+        ({'hidden': {'closes': 'part'}}, 'passed', 'passed'),
+        ({'altered': ('closes',), 'hidden': {'closes': 'all'}}, 'passed', 'not checked'),
+    ],
+)
+def test_a_check_that_was_altered_or_is_hidden_shows_no_verdict(about, outcome, expected):
+    cell = new_code_cell('"""It closes"""', metadata={KEY: {'role': 'grade'}})
+    cell.metadata.nbgrader = {'grade_id': 'closes', 'points': 2}
+    lesson = SimpleNamespace(**({'hidden': {}, 'altered': ()} | about))
+    told = make_check(lesson, cell, Verdict('closes', outcome, 2.0, ''), [])
+    assert told.outcome == expected
+    assert make_check(lesson, cell, None, []).outcome in (expected, 'not checked')
