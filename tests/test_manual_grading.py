@@ -14,6 +14,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from course_maker import TOY, answered, executed, released_course, submit
+from looked_at import score_by_hand
 
 from grader.export.scores import write_scores
 from grader.grading import SubmissionOutcome
@@ -169,14 +170,6 @@ def test_points_given_in_the_formgrader_are_kept_by_a_regrade(course, formgrader
     assert 'Twice of what?' in html
 
 
-def give_points(course, student, points):
-    """Give a person's points for the written answer."""
-    with open_database(course.db_url) as book:
-        found = book.find_grade('explain', TOY, TOY, student)
-        found.manual_score, found.needs_manual_grade = points, False
-        book.db.commit()
-
-
 def is_listed(course, student):
     """Whether the formgrader lists the written answer among those to grade."""
     with open_database(course.db_url) as book:
@@ -185,14 +178,14 @@ def is_listed(course, student):
 
 def test_points_for_an_empty_answer_keep_the_reason_why_it_had_none(course):
     grade(course, 'ivan', '')
-    give_points(course, 'ivan', 0.5)
+    score_by_hand(course, 'ivan', 0.5)
     assert exported(course, 'ivan') == ('0.5', 'scored by hand; there is no answer')
 
 
 @pytest.mark.parametrize('again', [BECAUSE, f'\n{BECAUSE}  \n'], ids=['same', 'more space'])
 def test_points_given_by_hand_stay_for_an_unchanged_answer(course, again):
     grade(course, 'cleo', BECAUSE)
-    give_points(course, 'cleo', 1.5)
+    score_by_hand(course, 'cleo', 1.5)
     assert score_of(grade(course, 'cleo', again)) == '4.5/5'
     assert exported(course, 'cleo') == ('1.5', 'scored by hand')
 
@@ -200,7 +193,7 @@ def test_points_given_by_hand_stay_for_an_unchanged_answer(course, again):
 def test_a_rewritten_answer_waits_for_points_again(course):
     """It had the points of its earlier text, and nothing said that nobody had read it."""
     grade(course, 'dora', BECAUSE)
-    give_points(course, 'dora', 1.5)
+    score_by_hand(course, 'dora', 1.5)
     row = grade(course, 'dora', 'I do not know.')
     assert (score_of(row), row.stored.former) == ('3/5 …', 4.5)
     assert exported(course, 'dora') == (
@@ -210,16 +203,16 @@ def test_a_rewritten_answer_waits_for_points_again(course):
     )
     assert 'changed after 1.5 points' in page(course, 'dora')
     assert is_listed(course, 'dora')
-    give_points(course, 'dora', 0.5)
+    score_by_hand(course, 'dora', 0.5)
     assert exported(course, 'dora') == ('0.5', 'scored by hand')
     assert 'changed after' not in page(course, 'dora')
 
 
 def test_a_result_that_is_stored_again_keeps_the_points_of_a_rewritten_answer(course):
     grade(course, 'emil', BECAUSE)
-    give_points(course, 'emil', 1.5)
+    score_by_hand(course, 'emil', 1.5)
     grade(course, 'emil', 'I do not know.')
-    give_points(course, 'emil', 0.5)
+    score_by_hand(course, 'emil', 0.5)
     folder = course.folder('submitted', 'emil', TOY)
     submission = read_submission(folder, student_id='emil', assignment=TOY)
     store(course, submission, graded_notebook(course, 'emil', TOY))  # as a kept result
@@ -228,7 +221,7 @@ def test_a_result_that_is_stored_again_keeps_the_points_of_a_rewritten_answer(co
 
 def test_a_removed_answer_loses_the_points_that_it_was_given(course):
     grade(course, 'finn', BECAUSE)
-    give_points(course, 'finn', 1.5)
+    score_by_hand(course, 'finn', 1.5)
     row = grade(course, 'finn', '')
     assert (score_of(row), reason_in_a_line(row)) == ('3/5', '(was 4.5) there is no answer')
     assert exported(course, 'finn') == ('0.0', 'there is no answer')
@@ -237,7 +230,7 @@ def test_a_removed_answer_loses_the_points_that_it_was_given(course):
 
 def test_points_stay_if_nothing_shows_what_the_answer_was(course):
     grade(course, 'gina', BECAUSE)
-    give_points(course, 'gina', 1.5)
+    score_by_hand(course, 'gina', 1.5)
     (course.folder('autograded', 'gina', TOY) / f'{TOY}.ipynb').write_text('damaged')
     assert score_of(grade(course, 'gina', 'Another text.')) == '4.5/5'
 
@@ -245,7 +238,7 @@ def test_points_stay_if_nothing_shows_what_the_answer_was(course):
 def test_a_killed_run_forgets_no_points_of_a_rewritten_answer(course, monkeypatch):
     """`recover` stores it once more, when the database knows nothing of the earlier points."""
     grade(course, 'hugo', BECAUSE)
-    give_points(course, 'hugo', 1.5)
+    score_by_hand(course, 'hugo', 1.5)
 
     def fail(*_):
         raise OSError('the disk is full')
