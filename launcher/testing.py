@@ -37,7 +37,7 @@ OWN_NETWORK = (
 )
 """Runs a command with a network and shared memory of its own: ROS nodes of others are not seen."""
 NBVAL = (
-    *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '60'),
+    *('-p', 'tests.conftest', '--nbval', '--nbval-cell-timeout', '180'),
     *('-o', f'cache_dir={LESSONS_CACHE}'),
 )
 USAGE_ERROR = 4
