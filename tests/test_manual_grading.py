@@ -208,6 +208,20 @@ def test_a_rewritten_answer_waits_for_points_again(course):
     assert 'changed after' not in page(course, 'dora')
 
 
+@pytest.mark.parametrize('third', ['I do not know.', 'Nobody knows.'])
+def test_a_note_of_earlier_points_stays_until_somebody_has_read_the_answer(course, third):
+    """The database has forgotten these points after the second hand-in."""
+    student = f'jan{len(third)}'
+    grade(course, student, BECAUSE)
+    score_by_hand(course, student, 1.5)
+    grade(course, student, 'I do not know.')
+    grade(course, student, third)
+    assert 'after 1.5 points' in exported(course, student)[1]
+    score_by_hand(course, student, 1.0)
+    grade(course, student, third)
+    assert exported(course, student) == ('1.0', 'scored by hand')
+
+
 def test_a_result_that_is_stored_again_keeps_the_points_of_a_rewritten_answer(course):
     grade(course, 'emil', BECAUSE)
     score_by_hand(course, 'emil', 1.5)

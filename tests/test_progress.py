@@ -100,6 +100,18 @@ def test_a_changed_check_resets_a_passed_exercise_and_changed_text_does_not(page
     assert state(page, file) == 'changed'
 
 
+def test_line_ends_of_windows_change_no_check_and_no_answer(page, file):
+    """Grading reads them like the released cells; Validate called each check changed."""
+    notebook = notebook_of(page)
+    passes_in(file, notebook)
+    cells = json.loads(notebook.read_text('utf-8'))
+    for cell in cells['cells']:
+        cell['source'] = ''.join(cell['source']).replace('\n', '\r\n')
+    notebook.write_text(json.dumps(cells), 'utf-8')
+    assert read_lesson(notebook).altered == frozenset()
+    assert state(page, file) == 'passed'
+
+
 def test_an_exercise_that_failed_later_is_no_longer_passed(page, file):
     notebook = notebook_of(page)
     passes_in(file, notebook)

@@ -76,7 +76,8 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
             with open_database(course.db_url) as book:  # one connection for all that follows
                 former = held_score(book, *whose)
                 by_hand = manual_scores(book, *whose) if former else {}
-                note_rewritten(graded, journal.with_name(f'{whose[1]}.ipynb'), by_hand)
+                if by_hand or (former and former.pending):
+                    note_rewritten(graded, journal.with_name(f'{whose[1]}.ipynb'), by_hand)
                 _keep_files(course, submission)
                 # with ensure_ascii=False, text that can't be encoded fails here, not half-way
                 write_whole(journal, json.dumps(graded, ensure_ascii=False))

@@ -18,18 +18,26 @@ def note_rewritten(graded: NotebookNode, former_path: Path, points: dict[str, fl
 
     `former_path` is the executed notebook of the hand-in before, `points` what a person has given
     for it, by grade id. An answer is not rewritten if only the space around it has changed. If
-    nothing shows what the earlier text was, the points stay.
+    nothing shows what the earlier text was, the points stay. A note stays until a person has read
+    the answer.
     """
-    former = _answers(former_path) if points else {}
+    former = _answers(former_path)
     for cell in graded.cells:
         name, verdict = grade_id(cell), cell.metadata.get(KEY, {})
-        if name in points and EARLIER_POINTS in verdict:  # a kept result that was read since
+        if name not in former:
+            continue
+        if name in points:
+            is_rewritten = former[name].source.strip() != cell.source.strip()
+            earlier = points[name] if is_rewritten else None
+        else:
+            earlier = former[name].metadata.get(KEY, {}).get(EARLIER_POINTS)
+        if EARLIER_POINTS in verdict:  # a kept result, which a person may have read since
             del verdict[EARLIER_POINTS], verdict['reason']
-        if name in points and name in former and former[name] != cell.source.strip():
-            verdict[EARLIER_POINTS] = points[name]
+        if earlier is not None:
+            verdict[EARLIER_POINTS] = earlier
             verdict['reason'] = (
-                f'this answer was changed after {points[name]:g} points had been given for it by '
-                'hand: a person reads it again'
+                f'this answer was changed after {earlier:g} points had been given for it by hand: '
+                'a person reads it again'
             )
 
 
@@ -38,11 +46,11 @@ def reason_today(verdict: Mapping[str, Any], *, by_hand: bool) -> str:
     return '' if by_hand and EARLIER_POINTS in verdict else verdict.get('reason', '')
 
 
-def _answers(path: Path) -> dict[str, str]:
+def _answers(path: Path) -> dict[str, NotebookNode]:
     """Return the written answers of an executed notebook, by grade id; none if it is damaged."""
     try:
         notebook = parse_own_notebook(path.read_text('utf-8'))
     except (FileNotFoundError, ValueError):
         return {}
     answers = [cell for cell in notebook.cells if role(cell) == 'answer']
-    return {name: cell.source.strip() for cell in answers if (name := grade_id(cell))}
+    return {name: cell for cell in answers if (name := grade_id(cell))}

@@ -34,6 +34,7 @@ def read_lesson(path: Path) -> Lesson:
     numbers = {id(cell): number for number, cell in enumerate(notebook.cells, start=1)}
     for cell in notebook.cells:
         cell.metadata.pop(KEY, None)
+        cell.source = cell.source.replace('\r\n', '\n')  # as the grader reads it
         _change_back(cell, notes)
         if cell.cell_type == 'code':
             cell.outputs, cell.execution_count = [], None
