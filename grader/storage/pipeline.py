@@ -129,7 +129,8 @@ def make_unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
 def first_reason(graded: NotebookNode) -> str:
     """Return the first reason why points are missing in an executed notebook, or ''.
 
-    An error in the student's own cells comes before the reason of the check.
+    That there is no answer at all explains all that is missing. An error in the student's own
+    cells comes before the reason of the check.
     """
     restored = graded.metadata.get(KEY, {})
     if problem := restored.get('problem'):
@@ -137,8 +138,9 @@ def first_reason(graded: NotebookNode) -> str:
     for cell in graded.cells:
         verdict = cell.metadata.get(KEY, {})
         if verdict.get('outcome') in ('partial', 'failed', 'ungraded') and verdict.get('reason'):
-            causes = [note for note in restored.get('notes', ()) if note == NO_ANSWERS]
-            return '; '.join([*causes, *verdict.get('notes', ())[:1], verdict.reason])
+            if NO_ANSWERS in restored.get('notes', ()):
+                return NO_ANSWERS
+            return '; '.join([*verdict.get('notes', ())[:1], verdict.reason])
     return ''
 
 
