@@ -114,6 +114,7 @@ LINE_BEGIN, LINE_END = (0.2, -0.1), (1.2, -0.7)
         (LINE_BEGIN, (1.2, 0.7), 'move both joints by the same part'),
         ((0.2, 0.1), (1.2, 0.7), 'the sign of joint2 is wrong'),
         ((-0.2, -0.1), (-1.2, -0.7), 'the sign of joint1 is wrong'),
+        ((-0.2, 0.1), (-1.2, 0.7), 'both signs are wrong'),
         ((-0.1, 0.2), (-0.7, 1.2), 'the joints are swapped'),
         ((0.0, 0.0), LINE_END, 'start from where the arm is'),
     ],

@@ -23,8 +23,7 @@ def why_off_line(positions: np.ndarray, start: Sequence[float], end: Sequence[fl
     mistakes = {
         'start from where the arm is, at each goal': (positions, (0.0, 0.0)),
         joints.SWAPPED: (positions[:, ::-1], start),
-        'the sign of joint1 is wrong': (positions * (-1.0, 1.0), start),
-        'the sign of joint2 is wrong': (positions * (1.0, -1.0), start),
+        **{why: (positions * signs, start) for why, signs in joints.SIGNS.items()},
     }
     for why, (corrected, begin) in mistakes.items():
         if off_line(corrected, begin, end).max() <= ON_LINE_RAD:

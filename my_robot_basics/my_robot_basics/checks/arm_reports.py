@@ -12,6 +12,7 @@ from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, why_off_line
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_remaining import expect_remaining
+from my_robot_basics.checks.arm_results import IN_DEGREES
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import fail
@@ -111,8 +112,7 @@ class MoveReport:
                 )
         last, far_deg = list(self.messages[-1].position), [*map(math.degrees, self.end)]
         if np.allclose(last, far_deg, atol=0.1 * max(map(abs, far_deg))):
-            hint = 'these are degrees: all positions of MoveArm are in radians'
-            self._fail_position(last, hint, 'angles in radians')
+            self._fail_position(last, IN_DEGREES, 'angles in radians')
 
     def expect_line(self) -> None:
         """Expect all positions on the line from `arm.start` to the goal. Raises CheckFailed."""

@@ -15,6 +15,7 @@ NOT_THERE = (
     'let the last step end at the goal, and not before it or beyond it (`part = min(1.0, …)`), '
     'and call succeed() then'
 )
+IN_DEGREES = 'these are degrees: all positions of MoveArm are in radians'
 ASIDE_RAD = 0.05
 """An arm that is farther than this from its goal is elsewhere."""
 CLOSE_RAD = 0.6
@@ -110,7 +111,7 @@ def why_off(seen: Sequence[float], wanted: Pose, *, start: Pose) -> str:
     if is_near(seen, start):
         return 'this is where the arm was: put in where it is in the end'
     if is_near(seen, [math.degrees(each) for each in wanted], within_rad=0.5):
-        return 'these are degrees: all positions of MoveArm are in radians'
+        return IN_DEGREES
     if is_near(seen, [math.radians(each) for each in wanted], within_rad=1e-3):
         return 'the positions of MoveArm are in radians already'
     why = joints.why_off(seen, [math.degrees(each) for each in wanted])

@@ -3,9 +3,12 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from my_robot_basics.checks.action_ends import SentGoal
-from my_robot_basics.checks.arm_results import is_near, why_aborted
-from my_robot_basics.checks.joints import SWAPPED
+from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line
+from my_robot_basics.checks.arm_results import IN_DEGREES, is_near, why_aborted
+from my_robot_basics.checks.joints import SIGNS, SWAPPED
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm
 from my_robot_basics.feedback.errors import fail, shorten
 
@@ -55,18 +58,22 @@ def expect_on_the_way(arm: WatchedArm, sent: SentGoal, position: Pose, *, start:
 
 def _why_beside(seen: Sequence[float], start: Pose, position: Pose) -> str:
     """Advice for a position that is not on the way, by the mistake it looks like."""
-    if _is_between(seen[::-1], start, position):
+    if _is_on_way(seen[::-1], start, position):
         return SWAPPED
     if not _is_far_joint_between(seen, start, position) and _is_between(
         [math.radians(each) for each in seen], start, position
     ):
-        return 'these are degrees: all positions of MoveArm are in radians'
-    first, second = seen
-    if _is_between([-first, second], start, position):
-        return 'the sign of joint1 is wrong'
-    if _is_between([first, -second], start, position):
-        return 'the sign of joint2 is wrong'
+        return IN_DEGREES
+    for why, signs in SIGNS.items():
+        if _is_on_way([a * b for a, b in zip(signs, seen, strict=True)], start, position):
+            return why
     return 'put in where the arm was stopped, on its way, in radians'
+
+
+def _is_on_way(seen: Sequence[float], start: Pose, goal: Pose) -> bool:
+    """Whether the arm passes there: a goal (a, -b) makes swapped joints look like wrong signs."""
+    is_on_line = off_line(np.array([seen]), start, goal)[0] <= ON_LINE_RAD
+    return bool(is_on_line) and _is_between(seen, start, goal)
 
 
 def _is_between(seen: Sequence[float], start: Pose, goal: Pose) -> bool:

@@ -17,6 +17,12 @@ CLOSE_RAD = 0.02
 """A pose that is no farther off than this may have been rounded to two decimals."""
 OTHER_TYPE = 'publish a JointState there: compare the message type in create_publisher(…)'
 SWAPPED = 'the joints are swapped: θ1 belongs to joint1, and comes first'
+SIGNS = {
+    'the sign of joint1 is wrong': (-1.0, 1.0),
+    'the sign of joint2 is wrong': (1.0, -1.0),
+    'both signs are wrong': (-1.0, -1.0),
+}
+"""Advice for a mirrored pose, with the factors that mirror it."""
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
 """Advice for a pose that does not look like a known mistake."""
 CONVERT_EACH = (
@@ -120,9 +126,9 @@ def why_off(
         'degrees() converts the other way: call radians()': [math.degrees(a) for a in pose_deg],
         'joint2 is still in degrees: convert both with radians()': [right[0], pose_deg[1]],
         'joint1 is still in degrees: convert both with radians()': [pose_deg[0], right[1]],
-        'the sign of joint1 is wrong': [-right[0], right[1]],
-        'the sign of joint2 is wrong': [right[0], -right[1]],
-        'both signs are wrong': [-angle for angle in right],
+        **{
+            why: [a * b for a, b in zip(signs, right, strict=True)] for why, signs in SIGNS.items()
+        },
         'joint2 holds θ1, too': [right[0], right[0]],
         'joint1 holds θ2, too': [right[1], right[1]],
         'joint2 holds θ1 + θ2, and not θ2 alone': [right[0], sum(right)],
