@@ -122,6 +122,27 @@ class NeverSends(MoveArmClient):
         pass
 
 
+class SendsTwice(MoveArmClient):
+    """The arm would move twice, if its server were not busy with the first goal."""
+
+    def send(self, pose):
+        self.client.send_goal_async(MoveArm.Goal(position=pose.position, speed=0.5))
+        super().send(pose)
+
+
+class TriesAgain(MoveArmClient):
+    """Sends a rejected goal a second time, when everybody has been told of the first."""
+
+    def send(self, pose):
+        self.pose = pose
+        super().send(pose)
+
+    def tell(self, word):
+        super().tell(word)
+        if word == 'rejected':
+            super().send(self.pose)
+
+
 class WaitsForTheServer(MoveArmClient):
     """Waits in the callback until there is a server, but for no response."""
 
@@ -180,6 +201,8 @@ WRONG_OUTCOMES = [
     (Sleeps, IN_CALLBACK),
     (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),
     (NeverSends, r'expected a goal .*saw none.*: call send_goal_async\(goal\) for each message'),
+    (SendsTwice, r'one goal for each message on /goal_pose, saw 2 .*: call send_goal_async\('),
+    (TriesAgain, r'one goal for each message on /goal_pose, saw \d+ for one message: call send_'),
     (
         WaitsForTheServer,
         'a node that goes on with its work while there is no server .*: look at server_is_ready',
@@ -237,12 +260,6 @@ class NeverCancels(MoveArmClient):
         pass
 
 
-class HasNoHandleYet(MoveArmClient):
-    def obstacle(self, message):
-        if message.data:
-            self.goal_handle.cancel_goal_async()
-
-
 class TellsBeforeTheServer(MoveArmClient):
     def obstacle(self, message):
         if message.data and self.goal_handle is not None:
@@ -281,7 +298,6 @@ WRONG_CANCELS = [
         NeverCancels,
         r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',
     ),
-    (HasNoHandleYet, "AttributeError: 'NoneType' object has no attribute 'cancel_goal_async'"),
     (TellsBeforeTheServer, "no outcome while the server has not said.*, saw 'canceled': publish"),
     (KeepsTheRejectedOne, r'expected a request to cancel .*saw none'),
     (WritesTwoLs, "expected 'canceled' on .*saw 'cancelled': write canceled with one l"),
