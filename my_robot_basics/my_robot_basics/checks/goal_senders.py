@@ -1,10 +1,12 @@
-"""Why a node sends no goal, or publishes nothing when one has ended: one clause each."""
+"""A node that sends goals: meet it, expect one goal for a message, and say why none comes."""
 
 from collections.abc import Collection
 
 from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.scripted_action import ReceivedGoal
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange.values import type_name
+from my_robot_basics.feedback.errors import expect
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
@@ -13,6 +15,27 @@ WAITS = (
     'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_async and '
     'get_result_async, each with add_done_callback'
 )
+MEET_SEC, MET_SEC = 2.0, 0.2
+"""How long to wait for a client, and then for it to discover the server, in s of wall time."""
+
+
+def meet_client(watcher: Watcher, name: str) -> None:
+    """Wait until a client of that action is known: it discovers the server at about that time."""
+    end = f'{name}/_action/send_goal'
+    watcher.spin_until(lambda: watcher.node.count_clients(end) > 0, timeout_sec=MEET_SEC)
+    watcher.spin_for(MET_SEC)
+
+
+def expect_one(goals: Collection[ReceivedGoal], *, asked_on: str) -> None:
+    """No message on the topic `asked_on` leads to several goals. Raises CheckFailed."""
+    expect(
+        len(goals) <= 1,
+        expected=f'one goal for each message on {asked_on}',
+        seen=f'{len(goals)} for one message',
+        hint='call send_goal_async(goal) once for each message, and subscribe to '
+        f'{asked_on} once, in one node',
+        cause='a message leads to several goals',
+    )
 
 
 def why_no_goal(

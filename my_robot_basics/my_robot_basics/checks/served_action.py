@@ -7,7 +7,7 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import Bool
 
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.checks.goal_senders import why_no_goal, why_silent
+from my_robot_basics.checks.goal_senders import expect_one, meet_client, why_no_goal, why_silent
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
 from my_robot_basics.checks.services import answers_parameters
@@ -21,9 +21,8 @@ REPLY_SEC = 4.0
 QUIET_SEC, SOON_SEC, MORE_SEC = 0.5, 0.25, 0.05
 """How long to wait for what must not come: normally; if the node has already processed everything;
 for a second message of a callback that has published one. In s of wall time."""
-AGAIN_SEC, MEET_SEC, MET_SEC = 1.0, 2.0, 0.2
-"""A new client may lose a goal, so its message is published again after AGAIN_SEC. Before that,
-MEET_SEC is how long to wait for the client, and MET_SEC for it to discover the server."""
+AGAIN_SEC = 1.0
+"""A new client may lose a goal, so its message is published again after AGAIN_SEC."""
 
 
 class ServedAction(ScriptedActionServer):
@@ -45,6 +44,7 @@ class ServedAction(ScriptedActionServer):
         self._raised = CallbackErrors(set(outcomes.publishers()))
         self.publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
+        self._for_last: Callable[[], list[ReceivedGoal]] = list  # the goals for the last message
         self._was_away = False  # whether a message without a goal so far found no server
         self._mute: set[str] = set()  # nodes without an answer about parameters: not asked again
         self._cancelled_sec = 0.0  # the longest time from a goal to an obstacle's cancel request
@@ -63,20 +63,24 @@ class ServedAction(ScriptedActionServer):
         another goal. Raises CheckFailed with the reason.
         """
         self.is_expected = is_it
-        self._meet_client()
+        if self._known_starts < self.starts:
+            meet_client(self.watcher, self.name)
         before, self._before = len(self.goals), len(self._outcomes.received)
 
         def found() -> list[ReceivedGoal]:
             return [goal for goal in self.goals[before:] if is_it(goal.request)]
 
         self.publish(message)
+        self._for_last = found
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
             if self.watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
                 self._known_starts, self._was_away = self.starts, False
                 self.let_client_know()
+                expect_one(self._for_last(), asked_on=self.asked_on)
                 return found()[0]
             if self._known_starts < self.starts and len(self.goals) == before:
                 self.publish(message)
+                self._for_last = list  # a client that is slow may send one goal for each
         others, name = self.goals[before:], self.name
         fail(
             expected=f'a goal for {name} for the message on {self.asked_on}',
@@ -122,6 +126,7 @@ class ServedAction(ScriptedActionServer):
         if self.watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
             self._raised.expect_none()
             self.watcher.spin_for(MORE_SEC)
+            expect_one(self._for_last(), asked_on=self.asked_on)
             words = new()
             expect(
                 len(words) == 1 or len(self._outcomes.received) <= self.count_over(),
@@ -148,6 +153,7 @@ class ServedAction(ScriptedActionServer):
         """The client publishes nothing for a while. Raises CheckFailed; `while_` says why."""
         self.let_client_know()
         self.watcher.spin_for(SOON_SEC)
+        expect_one(self._for_last(), asked_on=self.asked_on)
         others = [message.data for message in self._outcomes.messages()[self._before :]]
         expect(
             not others or len(self._outcomes.received) <= self.count_over(),
@@ -170,13 +176,6 @@ class ServedAction(ScriptedActionServer):
         if topic_name not in self.publishers:
             self.publishers[topic_name] = Topic(topic_name).meet(self.watcher, type(message))
         self.publishers[topic_name].publish(message)
-
-    def _meet_client(self) -> None:
-        """Wait until the client is discovered: it discovers the server at about that time."""
-        if self._known_starts < self.starts:
-            node, name = self.watcher.node, f'{self.name}/_action/send_goal'
-            self.watcher.spin_until(lambda: node.count_clients(name) > 0, timeout_sec=MEET_SEC)
-            self.watcher.spin_for(MET_SEC)
 
     def let_client_know(self) -> None:
         """Wait until the client must have processed what was sent to it before."""
