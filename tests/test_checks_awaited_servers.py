@@ -7,6 +7,7 @@ from my_robot_basics.checks import awaited_servers, open_action, services
 from my_robot_basics.checks.awaited_servers import SERVER_SEC, NoServer, wait_for_server
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 from my_robot_basics.graph.graphs import SETTLED_SEC
+from rclpy.context import Context
 
 
 @pytest.fixture
@@ -25,26 +26,40 @@ def waited(monkeypatch):
     stopwatch = SimpleNamespace(free_sec=lambda: told.gives * sum(told.free))
     monkeypatch.setattr(awaited_servers, 'Stopwatch', lambda: stopwatch)
     monkeypatch.setattr(awaited_servers.graphs, 'is_settled', lambda watcher: told.is_settled)
-    told.watcher = SimpleNamespace(spin_until=spin_until, spin_until_free=spin_until_free)
+    told.watcher = SimpleNamespace(
+        spin_until=spin_until, spin_until_free=spin_until_free, context=Context()
+    )
     return told
 
 
 def test_a_server_that_appears_is_not_reported(waited):
     waited.comes = True
-    assert wait_for_server(waited.watcher, lambda: False) is None
+    assert wait_for_server(waited.watcher, '/arm', lambda: False) is None
+
+
+def test_the_notebook_is_asked_once_about_a_server_that_is_still_there(monkeypatch, waited):
+    asked = []
+    monkeypatch.setattr(awaited_servers.graphs, 'is_settled', lambda watcher: asked.append(1))
+    waited.comes = True
+    for name in ('/arm', '/arm', '/other'):
+        assert wait_for_server(waited.watcher, name, lambda: True) is None
+    assert len(asked) == 2
+    waited.comes = False
+    assert wait_for_server(waited.watcher, '/arm', lambda: False).seen == 'none in 10 s'
+    assert len(asked) == 3
 
 
 @pytest.mark.parametrize(('gives', 'doubt'), [(1.0, CheckFailed), (0.6, Starved)])
 def test_a_missing_server_counts_as_starved_on_a_busy_machine(waited, gives, doubt):
     waited.gives = gives
-    none = wait_for_server(waited.watcher, lambda: False)
+    none = wait_for_server(waited.watcher, '/arm', lambda: False)
     assert (none.seen, none.doubt) == ('none in 10 s', doubt)
     assert (waited.free, waited.wall) == ([SERVER_SEC], [])
 
 
 def test_the_wait_is_short_if_no_server_can_appear(waited):
     waited.is_settled, waited.gives = True, 0.0
-    none = wait_for_server(waited.watcher, lambda: False)
+    none = wait_for_server(waited.watcher, '/arm', lambda: False)
     assert (none.seen, none.doubt) == ('none', CheckFailed)
     assert (waited.free, waited.wall) == ([], [SETTLED_SEC])
 

@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -184,7 +185,8 @@ def test_malformed_replies_about_nodes_are_ignored(monkeypatch, body):
     assert (node_troubles.last_raised('/a'), node_troubles.blocking_line('/a')) == ('', '')
     assert node_troubles.unpublished_field('/a') == ('', '')
     assert node_troubles.how_answer_ended() == ('', '', '')
-    assert node_troubles.times_raised('/a') == (5 if body == 5 else 0)
+    assert node_troubles.has_raised_since('/a', 4) == (body == 5)
+    assert not node_troubles.has_raised_since('/a', 5)
 
 
 def test_requests_to_the_notebook_have_the_agreed_form(monkeypatch):
@@ -247,18 +249,22 @@ def test_an_exception_in_a_callback_is_reported_until_its_node_is_restarted(monk
     assert what_raised(['/other', '/raises']).startswith('its callback raised ZeroDiv')
     assert what_raised(['/other']) == ''
     live.run(Still, key='Raises')
-    assert (node_troubles.last_raised('/raises'), node_troubles.times_raised('/raises')) == ('', 0)
+    assert node_troubles.last_raised('/raises') == ''
+    assert not node_troubles.has_raised_since('/raises', 0)
     live.stop()
 
 
 @pytest.mark.starts
 @pytest.mark.parametrize('end', [live.stop, live.reset])
-def test_the_count_of_exceptions_is_reset_when_a_node_ends(monkeypatch, end):
+def test_exceptions_are_forgotten_when_a_node_ends(monkeypatch, end):
     monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
     live.run(Raises)
-    live.wait_until(lambda: node_troubles.times_raised('/raises') > 2)
+    live.wait_until(lambda: node_troubles.has_raised_since('/raises', 0))
+    later_ns = time.monotonic_ns()
+    live.wait_until(lambda: node_troubles.has_raised_since('/raises', later_ns))
     end()
-    assert (node_troubles.last_raised('/raises'), node_troubles.times_raised('/raises')) == ('', 0)
+    assert node_troubles.last_raised('/raises') == ''
+    assert not node_troubles.has_raised_since('/raises', 0)
 
 
 class Waits(Node):
@@ -384,7 +390,7 @@ def test_a_field_of_a_wrong_type_in_a_published_message_is_named(monkeypatch):
             self.publisher.publish(message)
 
     live.run(Floats)
-    live.wait_until(lambda: node_troubles.times_raised('/floats'))
+    live.wait_until(lambda: node_troubles.last_raised('/floats'))
     assert node_troubles.unpublished_field('/floats') == ('header.stamp.sec', 'int32')
     assert what_raised(['/floats']).endswith(
         'so give `header.stamp.sec` a value of the type `int32`'
@@ -406,7 +412,7 @@ def test_logging_a_value_that_is_no_text_is_reported_with_its_line(monkeypatch):
             self.get_logger().info({'elbow_up': 1.0})
 
     live.run(Logs)
-    live.wait_until(lambda: node_troubles.times_raised('/logs'))
+    live.wait_until(lambda: node_troubles.last_raised('/logs'))
     why = what_raised(['/logs'])
     assert ", in tick: self.get_logger().info({'elbow_up': 1.0}))" in why
     assert why.endswith('so log a text: put the value into an f-string')
@@ -426,6 +432,6 @@ def test_an_exception_in_a_library_is_reported_with_the_students_line(monkeypatc
             JointState(position=['0.1'])
 
     live.run(Texts)
-    live.wait_until(lambda: node_troubles.times_raised('/texts'))
+    live.wait_until(lambda: node_troubles.last_raised('/texts'))
     assert "in tick: JointState(position=['0.1'])" in node_troubles.last_raised('/texts')
     live.stop()

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import threading
+from functools import partial
 
 import pytest
 from geometry_msgs.msg import Point
@@ -16,6 +17,8 @@ from my_robot_basics.checks import (
     wall_recording,
 )
 from my_robot_basics.exchange import settled
+from my_robot_basics.graph import graphs
+from my_robot_basics.graph.watcher import Watcher
 from nodes.running import imported, running
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
@@ -198,6 +201,23 @@ def test_a_watcher_has_no_services_that_nodes_can_see(run):
     assert seen
     assert not [name for name in seen if '_check' in name]
     assert os.environ['ROS_DOMAIN_ID'] == str(live.classroom.enter())
+
+
+@pytest.mark.starts
+def test_the_notebook_is_not_asked_about_an_endpoint_that_is_on_the_graph(run, monkeypatch):
+    asked = []
+    monkeypatch.setattr(student, 'has_endpoint', lambda *args: not asked.append(args))
+    run(Node, 'idle').create_subscription(JointState, TOPIC, print, 10)
+    with Watcher() as watcher:
+        sees = partial(graphs.subscription_infos, watcher.node, TOPIC)
+        assert watcher.spin_until(lambda: bool(sees()), timeout_sec=10.0)
+        for type_ in None, JointState, Point:
+            assert topic(TOPIC).timeout_for(watcher, 9.0, end='subscriptions', type_=type_) == 9.0
+        assert topic(TOPIC).timeout_for(watcher, 9.0, end='publishers') == 9.0
+    assert asked == [
+        (TOPIC, 'subscriptions', 'geometry_msgs/msg/Point'),
+        (TOPIC, 'publishers', ''),
+    ]
 
 
 @pytest.mark.slow

@@ -81,6 +81,19 @@ def test_expressions_come_back_with_the_reply(shared, run_cell):
     assert result.expressions['reply']['data']['text/plain'] == "'aaa'"
 
 
+HOOKS = """
+for when in 'pre_run_cell', 'post_run_cell':
+    get_ipython().events.register(when, lambda *_: print('hook'))
+"""
+
+
+def test_no_hook_of_cells_runs_when_an_expression_is_asked_for(own_kernel, run_cell):
+    run_cell(own_kernel, HOOKS)
+    assert text_of(run_cell(own_kernel, '')) == 'hook\n'
+    result = run_cell(own_kernel, '', expressions={'reply': '1 + 1'})
+    assert (result.outputs, result.expressions['reply']['data']['text/plain']) == ([], '2')
+
+
 def test_a_display_is_updated_from_a_later_cell(shared, run_cell):
     first = run_cell(shared, "h = display('old', display_id=True)")
     second = run_cell(shared, "h.update('new'); print('done')")

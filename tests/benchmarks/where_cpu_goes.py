@@ -1,19 +1,19 @@
 """Which processes use the CPU while a submission is graded, and in which part.
 
-    .venv/bin/python tests/benchmarks/where_cpu_goes.py [RUNS]
+    .venv/bin/python tests/benchmarks/where_cpu_goes.py [RUNS] [--samples NAME ...]
 
-It prints means over some right and wrong sample answers, graded one after another. Waiting is not
-counted, so a busy machine shows nearly the same. Nothing is asserted.
+It prints means over some right and wrong sample answers, or those that are named, graded one after
+another. Waiting is not counted, so a busy machine shows nearly the same. Nothing is asserted.
 """
 
+import argparse
 import asyncio
 import os
 import re
 import resource
-import sys
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from measuring import Course, new_course, table
@@ -96,20 +96,20 @@ def grade(course: Course, name: str, number: int) -> None:
         used[which] += end - start
 
 
-def main(runs: int = 3) -> None:
+def main(runs: int, names: Sequence[str]) -> None:
     """Print the table."""
     require_isolation()
     course = new_course('cpu')
-    for assignment in {assignment_of(PATHS[name]) for name in NAMES}:
+    for assignment in {assignment_of(PATHS[name]) for name in names}:
         register(course, assignment)
     watch('start', lambda *_: START)
     watch('run', lambda code, *_: PROBE if 'probe' in code else REST)
     watch('stop', lambda *_: REST, first=True)
     with share_engine(course.db_url):
-        grade(course, NAMES[0], 0)  # starts the fork servers
+        grade(course, names[0], 0)  # starts the fork servers
         used.clear()
         children, number = _of_children(), 0
-        for number, name in enumerate(runs * NAMES, start=1):
+        for number, name in enumerate(runs * [*names], start=1):
             grade(course, name, number)
     used['bubblewrap and the like', 'rooms'] = _of_children() - children
     print(f'{number} submissions, load {os.getloadavg()[0]:.1f}')
@@ -124,4 +124,8 @@ def _of_children() -> float:
 
 
 if __name__ == '__main__':
-    main(*map(int, sys.argv[1:]))
+    parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
+    parser.add_argument('runs', type=int, nargs='?', default=3, metavar='RUNS')
+    parser.add_argument('--samples', nargs='+', default=NAMES, metavar='NAME')
+    args = parser.parse_args()
+    main(args.runs, args.samples)

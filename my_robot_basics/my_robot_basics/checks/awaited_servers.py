@@ -7,7 +7,7 @@ from my_robot_basics.checks.doubts import doubt_after
 from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import CheckFailed, expect
 from my_robot_basics.feedback.hidden import student_text
-from my_robot_basics.graph import graphs
+from my_robot_basics.graph import earlier_waits, graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
 
@@ -45,11 +45,15 @@ def expect_type(
     )
 
 
-def wait_for_server(watcher: Watcher, is_there: Callable[[], bool]) -> NoServer | None:
+def wait_for_server(watcher: Watcher, name: str, is_there: Callable[[], bool]) -> NoServer | None:
     """Wait for a server, but only SETTLED_SEC if the notebook says that none can appear.
 
-    Return None if it appeared.
+    Return None if it appeared. The notebook is not asked if the server of that name has appeared
+    before in this grade cell, and is still there.
     """
+    appeared = ('server', name), True
+    if earlier_waits.is_known(watcher.context, *appeared) and is_there():
+        return None
     if graphs.is_settled(watcher):
         timeout_sec, doubt = graphs.SETTLED_SEC, CheckFailed
         came = watcher.spin_until(is_there, timeout_sec=timeout_sec)
@@ -57,4 +61,7 @@ def wait_for_server(watcher: Watcher, is_there: Callable[[], bool]) -> NoServer 
         timeout_sec, watch = SERVER_SEC, Stopwatch()
         came = watcher.spin_until_free(is_there, free_sec=timeout_sec)
         doubt = doubt_after(watch, timeout_sec)
-    return None if came else NoServer(graphs.none_in(timeout_sec), doubt)
+    if came:
+        earlier_waits.remember(watcher.context, *appeared)
+        return None
+    return NoServer(graphs.none_in(timeout_sec), doubt)

@@ -1,5 +1,6 @@
 """Exceptions that a node's callbacks raised: each would have ended `rclpy.spin`."""
 
+import time
 from collections.abc import Callable, Iterable
 
 from my_robot_basics.exchange import node_troubles
@@ -20,12 +21,16 @@ class CallbackErrors:
 
     def __init__(self, node_names: Iterable[str]) -> None:
         """`node_names`: the nodes' full names."""
-        self._before = {name: node_troubles.times_raised(name) for name in node_names}
+        self._node_names = [*node_names]
+        self._since_ns = time.monotonic_ns()
 
     def hint(self) -> str:
         """A clause that names one of the exceptions, and what to do; '' if there is none."""
-        names = [n for n, times in self._before.items() if node_troubles.times_raised(n) > times]
-        raised = what_raised(names)
+        raised = what_raised(
+            name
+            for name in self._node_names
+            if node_troubles.has_raised_since(name, self._since_ns)
+        )
         return fix_first(raised) if raised else ''
 
     def hint_or_thread(self) -> str:
@@ -42,14 +47,14 @@ class CallbackErrors:
         """As `hint`; else a clause on a callback that does not return, or an ended node; or ''."""
         if raised := self.hint():
             return raised
-        if stopped := what_stopped(self._before):
+        if stopped := what_stopped(self._node_names):
             return f'{stopped}; fix that first'
         return (
             ENDED if watcher.spin_until_free(self._is_one_gone(watcher), free_sec=GONE_SEC) else ''
         )
 
     def _is_one_gone(self, watcher: Watcher) -> Callable[[], bool]:
-        return lambda: any(graphs.is_gone(watcher, name) for name in self._before)
+        return lambda: any(graphs.is_gone(watcher, name) for name in self._node_names)
 
     def expect_none(self) -> None:
         """Raise CheckFailed if a callback raised an exception."""

@@ -163,7 +163,7 @@ class OpenAction:
             found.update(actions.take_graph(self.watcher.node).servers.get(self.name, {}))
             return bool(found)
 
-        if none := wait_for_server(self.watcher, is_there):
+        if none := wait_for_server(self.watcher, self.name, is_there):
             fail(
                 expected=f'a server of the action {self.name}',
                 seen=none.seen,

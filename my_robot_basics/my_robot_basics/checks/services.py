@@ -76,7 +76,7 @@ class Service:
             found.update(services.take_graph(watcher.node).servers.get(self.name, {}))
             return bool(found)
 
-        if none := wait_for_server(watcher, is_there):
+        if none := wait_for_server(watcher, self.name, is_there):
             fail(
                 expected=f'a server of {self.name}',
                 seen=none.seen,

@@ -98,7 +98,11 @@ class TopicEndpoints:
         `end` is 'publishers' or 'subscriptions'; with `type_`, only endpoints of that type count.
         """
         type_name = values.type_name(type_) if type_ else ''
-        if student.has_endpoint(self.name, end, type_name):
+        infos = graphs.publisher_infos if end == 'publishers' else graphs.subscription_infos
+        seen = {info.topic_type for info in infos(watcher.node, self.name)}
+        if (type_name in seen if type_name else seen) or student.has_endpoint(
+            self.name, end, type_name
+        ):
             return most_sec
         if graphs.is_settled(watcher):
             return graphs.SETTLED_SEC

@@ -26,10 +26,13 @@ def unpublished_field(node_name: str) -> tuple[str, str]:
     return (shorten(body[0], 60), shorten(body[1], 60)) if is_told else ('', '')
 
 
-def times_raised(node_name: str) -> int:
-    """Return how often that node's callbacks raised, 0 if the notebook reports nothing."""
+def has_raised_since(node_name: str, since_ns: int) -> bool:
+    """Whether that node's callbacks raised after a time, as the notebook reports.
+
+    `since_ns` is `time.monotonic_ns()`: all processes of a machine have the same.
+    """
     body = reply_value(wire.request(op='raised', name=node_name))
-    return body if type(body) is int else 0
+    return type(body) is int and body > since_ns
 
 
 def blocking_line(node_name: str) -> str:

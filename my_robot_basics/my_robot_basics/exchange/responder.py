@@ -68,10 +68,10 @@ def _last_raised(node_name: str) -> str:
     return troubles.last_raised(node_name) if troubles else ''
 
 
-def _times_raised(node_name: str) -> int:
-    """Return how often callbacks of a node that `live` spins have raised."""
+def _last_raised_ns(node_name: str) -> int:
+    """Return when a callback of a node that `live` spins has raised last (monotonic); or 0."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
-    return troubles.times_raised(node_name) if troubles else 0
+    return troubles.last_raised_ns(node_name) if troubles else 0
 
 
 def _unpublished_field(node_name: str) -> tuple[str, str]:
@@ -127,7 +127,7 @@ _OTHERS: dict[str, Callable[..., object]] = {
     'endpoint': _has_endpoint,
     'settled': _settled_nodes,
     'trouble': _last_raised,
-    'raised': _times_raised,
+    'raised': _last_raised_ns,
     'field': _unpublished_field,
     'unfinished': _blocking_line,
     'ended': _how_answer_ended,

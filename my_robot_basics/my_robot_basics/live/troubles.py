@@ -18,8 +18,8 @@ from my_robot_basics.session.errors import without_signatures
 UNFINISHED_SEC = 0.5
 _last: dict[str, str] = {}
 """The last exception of a node's callbacks, by the node's full name."""
-_times: dict[str, int] = {}
-"""How often a node's callbacks have raised."""
+_raised_ns: dict[str, int] = {}
+"""When a node's callbacks have raised last, as `time.monotonic_ns()`."""
 _fields: dict[str, tuple[str, str]] = {}
 """What `unpublished_field` returns, by the node's full name."""
 _of_services: dict[tuple[str, str], str] = {}
@@ -47,12 +47,12 @@ def remember(node_name: str, error: BaseException) -> None:
         _of_services[node_name, service_name] = told
     # these two last: a check in another thread that sees them asks for the others at once
     _last[node_name] = told
-    _times[node_name] = times_raised(node_name) + 1
+    _raised_ns[node_name] = time.monotonic_ns()
 
 
 def forget(node_name: str) -> None:
     """Drop a node's records, and those of threads: a new node of that name is starting."""
-    for of_nodes in (_last, _times, _fields):
+    for of_nodes in (_last, _raised_ns, _fields):
         of_nodes.pop(node_name, None)
         of_nodes.pop(THREADS, None)
     for key in [key for key in _of_services if key[0] == node_name]:
@@ -62,7 +62,7 @@ def forget(node_name: str) -> None:
 def forget_all() -> None:
     """Drop all records, at the beginning of an exercise."""
     _last.clear()
-    _times.clear()
+    _raised_ns.clear()
     _fields.clear()
     _of_services.clear()
 
@@ -80,9 +80,9 @@ def unpublished_field(node_name: str) -> tuple[str, str]:
     return _fields.get(node_name, ('', ''))
 
 
-def times_raised(node_name: str) -> int:
-    """Return how often a callback of the node has raised."""
-    return _times.get(node_name, 0)
+def last_raised_ns(node_name: str) -> int:
+    """Return when a callback of the node has raised last, as `time.monotonic_ns()`; 0 if none."""
+    return _raised_ns.get(node_name, 0)
 
 
 def last_raised_in_service(service_name: str) -> dict[str, str]:

@@ -41,6 +41,8 @@ class Messages:
         """
         request = self._client.execute(
             code,
+            # a request is no cell: no hooks run, and its text is not published
+            silent=expressions is not None,
             store_history=False,
             user_expressions=expressions,
             allow_stdin=on_input is not None,
