@@ -136,14 +136,19 @@ def test_finer_steps_show_whether_a_server_is_slow_at_that_speed_alone(
     time.step_ns = 50_000_000
     arm = SimpleNamespace(start=(0.0, 0.0), time=time, seconds=lambda sent: 60.0)
 
+    went = []
+
     def slowness(arm, position, *, seconds):
+        went.append(position)
         return times if abs(position[0]) / seconds < slowest_rad_per_sec else 1.0
 
-    monkeypatch.setattr(arm_speed, 'bring', lambda *_: None)
+    monkeypatch.setattr(arm_speed, 'bring', lambda arm, position: went.append(position))
     monkeypatch.setattr(arm_speed, '_slowness', slowness)
     monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: SimpleNamespace(rad_per_sec=SPEED))
     assert IN_FINER_STEPS(arm, sent, MINUTE) == is_right
     assert time.step_ns == 50_000_000
+    if is_right:  # the check goes on from there
+        assert went[-1] == MINUTE
 
 
 @pytest.mark.parametrize(('speed', 'moves_made'), [(2.0, 2), (3.0, 1)])

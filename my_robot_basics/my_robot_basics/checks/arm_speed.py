@@ -123,7 +123,9 @@ def _is_right_in_finer_steps(arm: WatchedArm, sent: SentGoal, position: Pose) ->
         bring(arm, arm.start)
         ends = zip(arm.start, position, strict=True)
         near = [start + part * (end - start) for start, end in ends]
-        return _slowness(arm, near, seconds=seconds) <= 1.0 + TOLERANCE
+        is_right = _slowness(arm, near, seconds=seconds) <= 1.0 + TOLERANCE
+        bring(arm, position)  # where the check goes on
+        return is_right
     finally:
         arm.time.step_ns = former_ns
 
