@@ -3,7 +3,8 @@
     .venv/bin/python tests/benchmarks/where_cpu_goes.py [RUNS] [--samples NAME ...]
 
 It prints means over some right and wrong sample answers, or those that are named, graded one after
-another. Waiting is not counted, so a busy machine shows nearly the same. Nothing is asserted.
+another: also how often checks ask the student's kernel. Waiting is not counted, so a busy machine
+shows nearly the same. Nothing is asserted.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from sample_class import PATHS, assignment_of
 from grader.judging.execute import execute_exercises
 from grader.kernels.isolation import require_isolation
 from grader.kernels.kernels import GradingKernel
+from grader.kernels.rooms import GradingRooms
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.database import share_engine
@@ -41,6 +43,7 @@ TICKS = os.sysconf('SC_CLK_TCK')
 
 used: Counter[tuple[str, str]] = Counter()
 """Seconds of CPU time, by process and part."""
+requests: list[str] = []
 before: dict[int, float] = {}
 """The CPU seconds of each kernel at the last look, by process ID."""
 
@@ -76,6 +79,17 @@ def watch(name: str, part_of: Callable[..., str], *, first: bool = False) -> Non
     setattr(GradingKernel, name, noted)
 
 
+def count_requests() -> None:
+    """Patch rooms to keep each request of a check to the student's kernel in `requests`."""
+    ask = GradingRooms._ask_student
+
+    async def counted(rooms: GradingRooms, request: str) -> str:
+        requests.append(request)
+        return await ask(rooms, request)
+
+    GradingRooms._ask_student = counted
+
+
 def grade(course: Course, name: str, number: int) -> None:
     """Grade a sample as a student's submission, and store it."""
     assignment, student = assignment_of(PATHS[name]), f'student_{number}'
@@ -105,14 +119,17 @@ def main(runs: int, names: Sequence[str]) -> None:
     watch('start', lambda *_: START)
     watch('run', lambda code, *_: PROBE if 'probe' in code else REST)
     watch('stop', lambda *_: REST, first=True)
+    count_requests()
     with share_engine(course.db_url):
         grade(course, names[0], 0)  # starts the fork servers
         used.clear()
+        requests.clear()
         children, number = _of_children(), 0
         for number, name in enumerate(runs * [*names], start=1):
             grade(course, name, number)
     used['bubblewrap and the like', 'rooms'] = _of_children() - children
-    print(f'{number} submissions, load {os.getloadavg()[0]:.1f}')
+    asked = len(requests) / number
+    print(f'{number} submissions, {asked:g} requests each, load {os.getloadavg()[0]:.1f}')
     rows = [(who, part, 1000 * seconds / number) for (who, part), seconds in sorted(used.items())]
     total = 1000 * sum(used.values()) / number
     table(('', '', 'CPU ms each'), [*rows, ('all', '', total)])

@@ -76,7 +76,6 @@ class ServedAction(ScriptedActionServer):
             if self.watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
                 self._known_starts, self._was_away = self.starts, False
                 self.let_client_know()
-                expect_one(self._for_last(), asked_on=self.asked_on)
                 return found()[0]
             if self._known_starts < self.starts and len(self.goals) == before:
                 self.publish(message)
@@ -103,6 +102,7 @@ class ServedAction(ScriptedActionServer):
                 return
             # the message may have arrived before the client knew that its goal was accepted
             self._publish(self.cancelled_on, Bool(data=True))
+        expect_one(self._for_last(), asked_on=self.asked_on)
         fail(
             expected=f'a request to cancel the goal for True on {self.cancelled_on}',
             seen=f'none in {REPLY_SEC:g} s',
@@ -153,7 +153,6 @@ class ServedAction(ScriptedActionServer):
         """The client publishes nothing for a while. Raises CheckFailed; `while_` says why."""
         self.let_client_know()
         self.watcher.spin_for(SOON_SEC)
-        expect_one(self._for_last(), asked_on=self.asked_on)
         others = [message.data for message in self._outcomes.messages()[self._before :]]
         expect(
             not others or len(self._outcomes.received) <= self.count_over(),
@@ -178,9 +177,10 @@ class ServedAction(ScriptedActionServer):
         self.publishers[topic_name].publish(message)
 
     def let_client_know(self) -> None:
-        """Wait until the client must have processed what was sent to it before."""
+        """Wait until the client has processed what was sent before. Raises CheckFailed."""
         self.answering_nodes()
         self.watcher.spin_for(SOON_SEC if self._mute else 0.0)
+        expect_one(self._for_last(), asked_on=self.asked_on)
 
     def answering_nodes(self) -> set[str]:
         """Full names of the client's nodes whose parameter services have always answered."""

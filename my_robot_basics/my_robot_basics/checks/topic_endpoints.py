@@ -100,9 +100,8 @@ class TopicEndpoints:
         type_name = values.type_name(type_) if type_ else ''
         infos = graphs.publisher_infos if end == 'publishers' else graphs.subscription_infos
         seen = {info.topic_type for info in infos(watcher.node, self.name)}
-        if (type_name in seen if type_name else seen) or student.has_endpoint(
-            self.name, end, type_name
-        ):
+        is_seen = type_name in seen if type_name else bool(seen)
+        if is_seen or student.has_endpoint(self.name, end, type_name):
             return most_sec
         if graphs.is_settled(watcher):
             return graphs.SETTLED_SEC

@@ -41,7 +41,7 @@ class Messages:
         """
         request = self._client.execute(
             code,
-            # a request is no cell: no hooks run, and its text is not published
+            # a request is no cell: no hooks run, and no input is published
             silent=expressions is not None,
             store_history=False,
             user_expressions=expressions,
