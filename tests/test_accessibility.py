@@ -14,7 +14,11 @@ from grader.report.feedback import write_feedback
 from grader.report.report import Run, write_report
 
 RELEASED = ROOT / 'notebooks'
-LESSONS = sorted(RELEASED.glob('**/*.ipynb'))
+LESSONS = sorted(
+    path
+    for path in RELEASED.glob('**/*.ipynb')
+    if path.parent.name != '.ipynb_checkpoints'  # of JupyterLab
+)
 OF_THE_THEME = ['.jp-InputPrompt', '.jp-OutputPrompt', '.highlight']
 """Parts whose colours Jupyter chooses: the numbers of cells, and the code."""
 LINKS_OF_THE_THEME = {'link-in-text-block': {'enabled': False}}
