@@ -176,8 +176,9 @@ def pytest_unconfigure(config: pytest.Config) -> None:
         shutil.rmtree(folder)
 
 
-LEAVE_SEC = 10.0
-"""How long the nodes of a file's last test may take to end."""
+LEAVE_SEC = 30.0
+"""How long the nodes of a file's last test may take to end: if a busy machine drops the farewell
+of a node, DDS waits for its lease to expire."""
 
 
 @pytest.fixture(scope='module', autouse=True)

@@ -13,7 +13,8 @@ from my_robot_basics.session import domain
 
 SCRIPT = Path(sys.executable).with_name('ros2')
 NODES = Path(__file__).parent / 'nodes'
-TIMEOUT_SEC = 30
+TIMEOUT_SEC = 90
+"""How long a command may take: beside other tests, its start alone may take half a minute."""
 MOST_SEC = 120
 """If an expected line does not come for so long, the process is killed, and the test fails."""
 OF_A_LESSON = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')

