@@ -25,9 +25,10 @@ SHARD = '--shard='
 ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """Beginnings of options with which it still checks everything."""
 LESSONS = 'solutions/*/*.ipynb'
-WORKERS = 8
-"""How many processes run tests at a time."""
-LESSON_WORKERS = 3
+WORKERS = 5
+"""How many processes run tests at a time: with the lessons they keep two processors busy, and more
+would make no run faster, but tests more often late."""
+LESSON_WORKERS = 2
 """How many processes run lessons at a time, while the tests run."""
 LESSONS_CACHE = Path('.pytest_cache/lessons')
 """The cache of the pytest that runs the lessons: it must not share that of the tests."""

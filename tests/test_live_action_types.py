@@ -55,9 +55,9 @@ def test_an_action_type_is_accepted():
 
 
 def test_a_missing_action_type_raises_the_error_of_rclpy():
-    run(Mover, MoveArm)
+    mover = run(Mover, MoveArm)
     with pytest.raises(TypeError, match=r"missing .* 'action_type' and 'action_name'"):
-        ActionClient(Mover(MoveArm))
+        ActionClient(mover)
 
 
 def test_the_error_about_a_wrong_action_type_is_translated_to_chinese():
