@@ -26,8 +26,7 @@ ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """Beginnings of options with which it still checks everything."""
 LESSONS = 'solutions/*/*.ipynb'
 WORKERS = 5
-"""How many processes run tests at a time: with the lessons they keep two processors busy, and more
-would make no run faster, but tests more often late."""
+"""How many processes run tests at a time: with the lessons, they keep two processors busy."""
 LESSON_WORKERS = 2
 """How many processes run lessons at a time, while the tests run."""
 LESSONS_CACHE = Path('.pytest_cache/lessons')
