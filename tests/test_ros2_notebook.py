@@ -123,4 +123,5 @@ def test_an_interrupt_ends_a_cell_and_leaves_nothing_behind(lesson, command, beg
     assert begins in text
     assert 'Traceback' not in text
     nodes = lesson.run('!ros2 node list --all')
-    assert re.fullmatch(r'/_live\n/_ros2cli_\d+\n/kinematics_publisher\n', nodes)
+    # on a busy machine, not all nodes are discovered in time: but there must be no others
+    assert re.fullmatch(r'(/_live\n)?/_ros2cli_\d+\n(/kinematics_publisher\n)?', nodes)
