@@ -6,6 +6,7 @@ import pytest
 from my_robot_basics.checks import (
     CheckFailed,
     node_parameters,
+    parameters,
     rate_parameter,
     sampling,
     topic,
@@ -17,6 +18,8 @@ from my_robot_basics.checks.rate_parameters import RateParameter
 from nodes.running import imported
 from rcl_interfaces.msg import ParameterValue, SetParametersResult
 from rcl_interfaces.srv import GetParameters, SetParameters
+from rclpy.client import Client
+from rclpy.task import Future
 
 pytestmark = pytest.mark.starts
 adjustable = imported('adjustable')
@@ -243,6 +246,21 @@ def test_parameters_are_read_and_set(run):
     assert (taken.successful, refused.successful) == (True, False)
     assert refused.reason == 'rate_hz is from 1 to 50'
     assert parameters.get('rate_hz') == 7.0
+
+
+def test_a_client_that_never_receives_a_response_is_replaced(run, monkeypatch):
+    """Fast DDS makes such clients now and then, of a node that has answered thousands of times."""
+    call_async, without = Client.call_async, []
+
+    def call(client, request):
+        without[:] = without or [client]
+        return Future() if client in without else call_async(client, request)
+
+    run(adjustable.Adjustable)
+    monkeypatch.setattr(Client, 'call_async', call)
+    monkeypatch.setattr(parameters, 'MEETING_SEC', 0.1)
+    assert NodeParameters('/adjustable_publisher').get('rate_hz') == 5.0
+    assert without
 
 
 @pytest.mark.parametrize(('type_name', 'default'), [('INTEGER', '5'), ('STRING', "'5.0'")])

@@ -26,8 +26,8 @@ NODE_SEC = 10.0
 SERVICES_SEC = 4.0
 """How long the services of a running node may take to appear, in seconds of free time."""
 MEETINGS, MEETING_SEC = 4, 1.0
-"""How often to send an empty request at most, and how long to wait for each response, in seconds
-of free time: see `NodeParameters._is_met`."""
+"""How many clients to make at most until one gets a response to an empty request, and how long
+each waits for it, in seconds of free time: see `NodeParameters._meet`."""
 _LEAVE_SERVICES = 'leave the parameter services to rclpy, and make none of your own'
 _OF_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
 
@@ -136,17 +136,9 @@ class NodeParameters:
         `greeting` is a request that changes nothing, if an empty request would change something.
         """
         with Watcher(shared=True) as watcher:
-            client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
-            if not watcher.spin_until_free(client.service_is_ready, free_sec=SERVICES_SEC):
-                fail(
-                    expected=f'the parameter services of {self.node_name}',
-                    seen='none',
-                    hint='leave start_parameter_services as it is, and see that the node runs',
-                    cause=f'{self.node_name} has no parameter services',
-                )
             errors = CallbackErrors([self.node_name])
             asked = None
-            if self._is_met(watcher, client, greeting or type(request)()):
+            if client := self._meet(watcher, type_, service_name, greeting or type(request)()):
                 asked = client.call_async(request)
                 wait_for_all(watcher, [asked], gives_up=lambda: bool(errors.hint()))
             if asked is None or not asked.done():
@@ -159,14 +151,26 @@ class NodeParameters:
             errors.expect_none()
             return asked.result()
 
-    def _is_met(self, watcher: Watcher, client: Client, greeting: Any) -> bool:
-        """Send requests that change nothing until one is answered; return whether one was.
+    def _meet(
+        self, watcher: Watcher, type_: type, service_name: str, greeting: Any
+    ) -> Client | None:
+        """Return a client that has received a response; None if none does. Raises CheckFailed.
 
         Discovery is not symmetric: a client may know a server that does not know the client yet,
-        and then the server drops its response.
+        and then the server drops its response. In a node's own process, once the node has sent
+        some thousands of responses, a new client may even receive none ever; the next one does.
         """
         for _ in range(MEETINGS):
+            client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
+            if not watcher.spin_until_free(client.service_is_ready, free_sec=SERVICES_SEC):
+                fail(
+                    expected=f'the parameter services of {self.node_name}',
+                    seen='none',
+                    hint='leave start_parameter_services as it is, and see that the node runs',
+                    cause=f'{self.node_name} has no parameter services',
+                )
             asked = client.call_async(greeting)
             if watcher.spin_until_free(asked.done, free_sec=MEETING_SEC):
-                return True
-        return False
+                return client
+            watcher.node.destroy_client(client)
+        return None
