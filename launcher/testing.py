@@ -25,10 +25,9 @@ SHARD = '--shard='
 ALL_THE_SAME = (*TIERS, '--no-isolation', SHARD)
 """Beginnings of options with which it still checks everything."""
 LESSONS = 'solutions/*/*.ipynb'
-WORKERS = 5
-"""How many processes run tests at a time: with the lessons, they keep two processors busy."""
-LESSON_WORKERS = 2
-"""How many processes run lessons at a time, while the tests run."""
+PROCESSORS = len(os.sched_getaffinity(0))
+MOST_WORKERS, MOST_LESSON_WORKERS = 8, 3
+"""How many processes at most run tests at a time, and lessons beside them."""
 LESSONS_CACHE = Path('.pytest_cache/lessons')
 """The cache of the pytest that runs the lessons: it must not share that of the tests."""
 OWN_NETWORK = (
@@ -93,10 +92,9 @@ class Checks:
 
     def tests(self, arguments: list[str]) -> list[str]:
         """Return the command that runs the tests, several at a time."""
-        # most tests mostly wait, but not those of the quick tier; all tests of a file run in
-        # one worker, because they share kernels and a ROS domain
-        processors = len(os.sched_getaffinity(0))
-        workers = min(processors, WORKERS) if '--quick' in arguments else WORKERS
+        # most tests wait half of their time, but not those of the quick tier; all tests of a file
+        # run in one worker, because they share kernels and a ROS domain
+        workers = min(PROCESSORS if '--quick' in arguments else 2 * PROCESSORS + 1, MOST_WORKERS)
         many = ('-n', str(workers), '--dist', 'loadfile', '--no-loadscope-reorder')
         return self.pytest('tests.xml', *many, *arguments)
 
@@ -107,7 +105,7 @@ class Checks:
 
     def lessons(self, shard: list[str]) -> list[str]:
         """Return the command that runs the lessons, and compares their stored outputs."""
-        many = ('-n', str(LESSON_WORKERS), '--dist', 'loadfile', 'solutions')
+        many = ('-n', str(min(PROCESSORS, MOST_LESSON_WORKERS)), '--dist', 'loadfile', 'solutions')
         return self.pytest('lessons.xml', *NBVAL, *shard, *many)
 
     def failed_lessons(self, shard: list[str]) -> list[str]:

@@ -263,6 +263,19 @@ def test_a_client_that_never_receives_a_response_is_replaced(run, monkeypatch):
     assert without
 
 
+def test_services_that_vanish_are_told_from_those_that_never_were(monkeypatch):
+    ready = iter([True])
+    monkeypatch.setattr(Client, 'service_is_ready', lambda client: next(ready, False))
+    monkeypatch.setattr(parameters, 'SERVICES_SEC', 0.1)
+    monkeypatch.setattr(parameters, 'MEETING_SEC', 0.1)
+    with pytest.raises(
+        CheckFailed, match='expected /gone to answer get_parameters, saw no answer'
+    ):
+        NodeParameters('/gone').get('rate_hz')
+    with pytest.raises(CheckFailed, match='expected the parameter services of /gone, saw none'):
+        NodeParameters('/gone').get('rate_hz')
+
+
 @pytest.mark.parametrize(('type_name', 'default'), [('INTEGER', '5'), ('STRING', "'5.0'")])
 def test_a_default_of_another_type_is_named(type_name, default):
     said = f"Wrong parameter type, expected 'Type.{type_name}' got 'Type.DOUBLE'"

@@ -102,9 +102,9 @@ def test_a_node_that_may_ignore_the_clock_is_tested_once_with_it_standing_still(
             topic(TOPIC).record(seconds=2.0)
         assert held[0] == driven_topic.SETTLE_SEC
         stood.append(held.count(1.0))
-    # a busy machine may delay even a plain timer's messages, and so put it to the test, too
-    assert stood[1] == 1
-    assert max(stood) == 1
+    # a busy machine may delay a plain timer's messages, and so put one of the two to the test
+    assert stood[1] == max(stood) == 1
+    assert min(stood) == 0
 
 
 @pytest.mark.usefixtures('patient')
