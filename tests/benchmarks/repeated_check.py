@@ -35,7 +35,7 @@ def main() -> None:
             cell = lesson.send(check)
             lesson.wait_for(lambda cell=cell: cell.done, timeout_sec=LONGEST_SEC)
             passed += cell.error is None
-            why = cell.error.splitlines()[-1] if cell.error else 'passes'
+            why = ' '.join(cell.error.split()) if cell.error else 'passes'
             print(f'{number:4} {time.monotonic() - began:6.1f} s  {why}', flush=True)
     print(f'{passed} of {options.times} pass')
     lesson.shut_down()
