@@ -53,7 +53,7 @@ def kernels_of(run):
     """Wait until both kernels of a submission run; return all processes of the run, sorted out.
 
     Below it are its workers, their rooms, and kernels that were started. Fork servers and the
-    kernels that they fork are no descendants of it.
+    kernels that they fork are no descendants of it: call this while the run starts them.
     """
     deadline, sessions = time.monotonic() + 120, set()
     while time.monotonic() < deadline and run.poll() is None:
@@ -100,8 +100,8 @@ def alive(processes):
 @pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_stopped_leaves_nothing_running_and_says_how_to_go_on(course, run, number):
-    assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))
     below = kernels_of(run)
+    assert any(line.startswith('ada') for line in iter(run.stdout.readline, ''))
     run.send_signal(number)
     _, err = run.communicate(timeout=240)
     assert run.returncode == 128 + number
