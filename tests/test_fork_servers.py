@@ -81,6 +81,18 @@ def test_a_fork_server_has_imported_all_modules_that_a_kernel_needs(loop, room, 
     assert set(imported) <= _held_by_a_server(room)
 
 
+MORE = """
+
+def import_for(room, usual=import_for):
+    usual(room)
+    import sys
+    sys.path.append({folder!r})
+    import imported_by_a_server
+    sys.path.remove({folder!r})
+"""
+"""What makes a server import one more module."""
+
+
 def test_a_fork_server_writes_bytecode_and_its_kernels_do_not(
     loop, monkeypatch, tmp_path, no_servers
 ):
@@ -91,12 +103,16 @@ def test_a_fork_server_writes_bytecode_and_its_kernels_do_not(
             ignore=shutil.ignore_patterns('__pycache__'),
         )
     )
+    (tmp_path / 'of_the_course').mkdir()
+    (tmp_path / 'of_the_course' / 'imported_by_a_server.py').touch()
+    with (program / 'imports.py').open('a') as imports:
+        imports.write(MORE.format(folder=str(tmp_path / 'of_the_course')))
     monkeypatch.setattr(fork_servers, '_PROGRAM', program)
     sandbox, kernel = loop.run(opened())
     try:
         assert kernel.why_not_forked == ''
-        compiled = {path.name.partition('.')[0] for path in program.glob('__pycache__/*.pyc')}
-        assert compiled == {path.stem for path in program.glob('*.py')}
+        compiled = tmp_path.glob('of_the_course/__pycache__/*.pyc')
+        assert [path.name.partition('.')[0] for path in compiled] == ['imported_by_a_server']
         assert printed(loop, kernel, 'import sys; print(sys.dont_write_bytecode)') == 'True\n'
     finally:
         loop.run(closed(sandbox, kernel))

@@ -159,10 +159,6 @@ def _sealed_copy(path: Path) -> IO[bytes]:
 
 
 def _environment() -> dict[str, str]:
-    """Return a server's environment: that of its kernels, without what only a room provides.
-
-    It may write bytecode, as no kernel may: otherwise, each server would compile those modules of
-    the course again that nothing else imports.
-    """
-    own = {'MPLCONFIGDIR': font_cache(), 'PYTHONDONTWRITEBYTECODE': ''}
+    """Return a server's environment: that of its kernels, without what only a room provides."""
+    own = {'MPLCONFIGDIR': font_cache()}
     return inherited_variables() | ENVIRONMENT | own

@@ -30,6 +30,7 @@ def main(control: socket.socket, room: str) -> None:
     privilege_drop.close_all_but(control.fileno())  # the file of Python may be open, too
     try:
         before = dict(os.environ)
+        sys.dont_write_bytecode = False  # or each server would compile the course's modules again
         imports.import_for(room)
         made = {name: text for name, text in os.environ.items() if before.get(name) != text}
         single_thread.become_single_threaded()
