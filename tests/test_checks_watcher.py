@@ -97,13 +97,15 @@ def test_a_watcher_waits_for_no_events():
         ]
 
 
-@pytest.fixture
-def end_cell(monkeypatch):
+@pytest.fixture(params=['test', 'a notebook'])
+def end_cell(request, monkeypatch):
     with grade_cell(monkeypatch) as end:
+        if request.param == 'a notebook':
+            monkeypatch.delenv('MY_ROBOT_BASICS_ROOM')
         yield end
 
 
-def test_watchers_of_a_grade_cell_share_a_participant_until_the_cell_ends(node, end_cell):
+def test_watchers_of_a_cell_share_a_participant_until_the_cell_ends(node, end_cell):
     with Watcher(shared=True) as first, Watcher(shared=True) as second, Watcher() as other:
         assert first.context is second.context
         assert other.context is not first.context
@@ -121,7 +123,15 @@ def test_watchers_of_a_grade_cell_share_a_participant_until_the_cell_ends(node, 
         assert fourth.context is not first.context
 
 
-def test_a_watcher_outside_a_grade_cell_ends_with_its_check(node):
+def test_a_shared_participant_that_was_shut_down_is_replaced(end_cell):
+    with Watcher(shared=True) as before:
+        pass
+    before.context.shutdown()
+    with Watcher(shared=True) as after:
+        assert after.context.ok()
+
+
+def test_a_watcher_outside_a_kernel_ends_with_its_check(node):
     with Watcher(shared=True) as alone:
         assert alone.context.ok()
     assert not alone.context.ok()
