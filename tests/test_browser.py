@@ -245,7 +245,7 @@ def test_the_doctor_draws_where_a_service_is_broken(opened):
     lesson.command('notebook:run-cell', lesson.index('forgetful'))
     assert errors(lesson.cells) == {}
     outputs = lesson.shown('forgetful').locator('.jp-OutputArea')
-    expect(outputs).to_contain_text('1. the callback returned no response')
+    expect(outputs).to_contain_text('the callback returned no response')
     image = outputs.locator('img')
     expect(image).to_have_attribute('alt', re.compile('broken: /gripper'))
     assert image.evaluate(WIDTH) > 200

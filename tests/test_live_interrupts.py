@@ -188,3 +188,38 @@ def test_a_constructor_that_blocks_can_be_interrupted(lesson):
     assert lesson.value('publishers()') == '[]'
     lesson.run('talker = run(Talker)')
     assert lesson.value('alive(talker)') == 'True'
+
+
+@pytest.fixture
+def count_participants(lesson):
+    """A function that counts the participants of the lesson's kernel."""
+    lesson.run('from my_robot_basics.graph import participants')
+    return lambda: lesson.value('len(participants.own_ports(classroom.enter()))')
+
+
+def test_the_participant_of_a_check_ends_with_its_cell(lesson, count_participants):
+    lesson.run('talker = run(Talker)')
+    before = count_participants()
+    lesson.run('from my_robot_basics.checks import fail, topic')
+    inside = 'print(len(participants.own_ports(classroom.enter())))'
+    for ending in '', "; fail(expected='x', seen='y', hint='z')":
+        cell = lesson.run(f"topic('/talk').wait_for(); {inside}{ending}")
+        assert int(cell.stdout.split()[0]) == int(before) + 1
+        assert cell.error == ('expected x, saw y: z' if ending else None)
+        assert count_participants() == before
+
+
+def test_the_participant_of_an_interrupted_check_ends_with_its_cell(lesson, count_participants):
+    lesson.run('talker = run(Talker)')
+    before = count_participants()
+    cell = lesson.send(
+        'from my_robot_basics.checks import topic\n'
+        "topic('/talk').wait_for()\n"
+        "print('begun')\n"
+        "topic('/talk').wait_for(lambda _: False, timeout_sec=60)"
+    )
+    lesson.wait_for(lambda: 'begun' in cell.stdout)
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    assert 'KeyboardInterrupt' in cell.error
+    assert count_participants() == before
