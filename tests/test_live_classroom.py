@@ -99,3 +99,20 @@ def test_a_publisher_receives_acknowledgements_within_a_second():
         for _ in range(3):
             publisher.publish(Point())
             assert publisher.wait_for_all_acked(Duration(seconds=1))
+
+
+def test_a_subscription_receives_from_a_publisher_of_its_process_that_has_sent_many_messages():
+    with Watcher() as first, Watcher() as second:
+        publisher = first.node.create_publisher(Point, '/target_point', 10)
+        for _ in range(5_100):  # more than Fast DDS's default for max_samples
+            publisher.publish(Point())
+        received = []
+        second.node.create_subscription(Point, '/target_point', received.append, 10)
+        assert second.spin_until(publisher.get_subscription_count, timeout_sec=10)
+        assert second.spin_until(
+            lambda: second.node.count_publishers('/target_point'), timeout_sec=10
+        )
+        second.spin_for(0.3)  # until both know all about each other
+        publisher.publish(Point(x=1.0))
+        assert second.spin_until(lambda: bool(received), timeout_sec=10)
+        assert received == [Point(x=1.0)]

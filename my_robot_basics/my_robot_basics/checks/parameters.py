@@ -157,8 +157,7 @@ class NodeParameters:
         """Return a client that has received a response; None if none does. Raises CheckFailed.
 
         Discovery is not symmetric: a client may know a server that does not know the client yet,
-        and then the server drops its response. In a node's own process, once the node has sent
-        some thousands of responses, a new client may even receive none ever; the next one does.
+        and then the server drops its response. A client that gets no response is replaced.
         """
         for meeting in range(MEETINGS):
             client = watcher.node.create_client(type_, f'{self.node_name}/{service_name}')
