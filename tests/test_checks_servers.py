@@ -2,10 +2,13 @@
 
 import collections
 import threading
+import time
 
 import pytest
+from geometry_msgs.msg import Point
 from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server
-from my_robot_basics.checks import CheckFailed, ik, responses, servers
+from my_robot_basics.checks import CheckFailed, elbow_up, ik, responses, servers, topic
+from my_robot_basics.graph.watcher import Watcher
 from nodes.running import STOPS, imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -119,6 +122,32 @@ def test_no_request_for_a_repeated_message_is_lost_when_the_server_leaves(run, m
     run(WorksOffSlowly)
     check_never_blocks()
     check_never_blocks()
+
+
+class LateOnce(IKClient):
+    """Is late with its first target, as on a busy machine."""
+
+    was_late = False
+
+    def ask(self, target):
+        if not self.was_late:
+            self.was_late = True
+            time.sleep(2.0)
+        super().ask(target)
+
+
+def test_a_target_from_before_the_check_that_is_handled_late_is_not_one_too_many(run):
+    run(LateOnce)
+    target = Point(x=TARGETS[0][0], y=TARGETS[0][1])
+    with Watcher() as before:
+        publisher = topic('/target_point').meet(before, Point)
+        publisher.publish(target)
+        before.spin_for(0.2)
+    with server() as serving:
+        ik.expect_answer(serving, *TARGETS[0])
+        serving.expect_nothing(hint=str, made_of=elbow_up.is_elbow_up)
+        assert len(serving.requests) == len(serving.published) + 1
+        elbow_up.expect_no_others(serving)
 
 
 @pytest.mark.slow

@@ -1,18 +1,24 @@
 """Match a node's messages with the responses sent to it: each needs a response of its own."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from my_robot_basics.checks.message_text import message_text
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.feedback.errors import fail
+from my_robot_basics.feedback.hidden import is_in_test_room
 from my_robot_basics.graph.watcher import Watcher
 
 MadeOf = Callable[[Any, Any], bool]
 """A function of a message and a response: whether the node made the message from the response."""
 OWED_SEC = 0.5
 """How long to wait for an outstanding request or message of a node, in s of free time."""
+
+
+EARLIER_LOOKS = 3
+"""How often to ask a node whether it has handled earlier messages; it has a second each time."""
 
 
 def made_of_none(_message: Any, _response: Any) -> bool:
@@ -29,6 +35,19 @@ def wait_for_requests(watcher: Watcher, requests: Sequence[Any], most: int) -> N
     while before < len(requests) < most:
         before = len(requests)
         watcher.spin_until_free(lambda: len(requests) > before, free_sec=OWED_SEC)  # noqa: B023
+
+
+def wait_for_earlier(watcher: Watcher, node_names: Iterable[str]) -> None:
+    """Wait until these nodes have handled the message that a cell before may just have sent.
+
+    On a busy machine, its request would come after the check's first message, as one too many. An
+    executor takes messages and responses before a request for parameters, so the first answer
+    comes after the node's request, and the second after what it makes of the response. At
+    grading, no such cell is run.
+    """
+    for name in () if is_in_test_room() else node_names:
+        for _ in range(2):
+            any(answers_parameters(watcher, name) for _ in range(EARLIER_LOOKS))
 
 
 class MadeMessages:

@@ -7,13 +7,13 @@ from typing import Any
 
 from rclpy.publisher import Publisher
 
-from my_robot_basics.checks import heartbeat
+from my_robot_basics.checks import heartbeat, responses
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.holding_server import HoldingServer
 from my_robot_basics.checks.message_text import message_text
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
-from my_robot_basics.checks.responses import MadeMessages, MadeOf, made_of_none, wait_for_requests
+from my_robot_basics.checks.responses import MadeMessages, MadeOf, made_of_none
 from my_robot_basics.checks.sole_server import expect_no_other, wait_until_known
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.checks.waiting_clients import WaitingClient
@@ -81,6 +81,7 @@ class Server(HoldingServer):
         """Publish a message that should lead to a request, without waiting for the request."""
         if self._publisher is None:
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
+            responses.wait_for_earlier(self._watcher, self._answers.publishers())
         self._seen = len(self._answers.received)
         self.made.begin()
         self.published.append(message)
@@ -88,7 +89,7 @@ class Server(HoldingServer):
 
     def wait_for_repeated(self) -> None:
         """Wait for outstanding requests: without a server, they would never be answered."""
-        wait_for_requests(self._watcher, self.requests, len(self.published))
+        responses.wait_for_requests(self._watcher, self.requests, len(self.published))
 
     def stop(self) -> None:
         """Destroy the server; return when the student's node has had time to notice."""
@@ -100,7 +101,7 @@ class Server(HoldingServer):
     ) -> Any:
         """Publish a message on `asked_on`; return the first new request for which `is_it` holds.
 
-        Raises CheckFailed with the reason if none comes in TIMEOUT_SEC of free time.
+        Raises CheckFailed if none comes in TIMEOUT_SEC of free time.
         """
         before = len(self.requests)
 
@@ -151,10 +152,7 @@ class Server(HoldingServer):
         )
 
     def expect_nothing(self, *, hint: Hint, made_of: MadeOf = made_of_none) -> None:
-        """In QUIET_SEC, no message on `to` that is not made from a response: see `MadeMessages`.
-
-        Raises CheckFailed.
-        """
+        """In QUIET_SEC, no message on `to` but those of `MadeMessages`. Raises CheckFailed."""
         self._watcher.spin_for(QUIET_SEC)
         others = self.made.others(made_of)
         expect(
