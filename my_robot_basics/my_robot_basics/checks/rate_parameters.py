@@ -14,9 +14,9 @@ from my_robot_basics.checks.topics import topic
 from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
 from my_robot_basics.feedback.hidden import student_text
 
-RECORD_PERIODS, RECORD_SEC = 40.0, (2.0, 4.0)
+RECORD_SEC = 4.0
 HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
-"""How long the clock is driven, and held: in periods of the expected rate, and limits in s."""
+"""The simulated clock is held for HOLD_PERIODS of the expected rate, HOLD_SEC at most."""
 NEAR_PART = 0.1
 """Two rates count as the same if they differ by at most this part."""
 UNCHANGED_PART = 0.25
@@ -182,10 +182,9 @@ class RateParameter:
         return _are_near(seen_hz, now_hz)
 
     def _record(self, rate_hz: float) -> Recording:
-        period_sec = 1.0 / max(1.0, rate_hz)
-        _, seconds, _ = sorted((RECORD_PERIODS * period_sec, *RECORD_SEC))
-        hold_sec = min(HOLD_PERIODS * period_sec, HOLD_SEC)
-        return topic(self.topic_name).record(seconds=seconds, hold_sec=hold_sec)
+        """Record the topic, on which `rate_hz` is expected."""
+        hold_sec = min(HOLD_PERIODS / max(1.0, rate_hz), HOLD_SEC)
+        return topic(self.topic_name).record(seconds=RECORD_SEC, hold_sec=hold_sec)
 
     def _measure(self, rate_hz: float) -> tuple[float, type[CheckFailed]]:
         """The present rate in Hz (0 without messages), and the exception for a verdict on it."""
