@@ -15,6 +15,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import tomlkit
 from traitlets.config import Config
 
 from launcher.environment import Environment
@@ -150,7 +151,7 @@ def test_memory_limits_the_number_of_servers_and_a_lack_is_reported(tmp_path):
 
 @pytest.fixture
 def configure(tmp_path, monkeypatch):
-    """A function that returns the hub's configuration, after replacing text in class.toml."""
+    """A function that returns the hub's configuration, with these settings in class.toml."""
     shutil.copy(DEPLOY / 'jupyterhub_config.py', tmp_path)
     monkeypatch.setattr(sys, 'path', [*sys.path])
     monkeypatch.setattr('capacity.memory_mb', lambda: 16_000)
@@ -161,11 +162,10 @@ def configure(tmp_path, monkeypatch):
     }.items():
         monkeypatch.setitem(sys.modules, name, stand_in)
 
-    def configured(old='', new=''):
-        text = (DEPLOY / 'class.toml').read_text()
-        assert old in text
-        settings = text.replace('/run/jupyterhub', f'{tmp_path}/run').replace(old, new, 1)
-        (tmp_path / 'class.toml').write_text(settings)
+    def configured(**settings):
+        class_ = tomlkit.parse((DEPLOY / 'class.toml').read_text()) | settings
+        class_['run'] = f'{tmp_path}/run'
+        (tmp_path / 'class.toml').write_text(tomlkit.dumps(class_))
         config = Config()
         hub = str(tmp_path / 'jupyterhub_config.py')
         runpy.run_path(hub, init_globals={'get_config': lambda: config})
@@ -185,11 +185,18 @@ def test_the_hub_reports_and_enforces_how_many_servers_fit(configure, capsys):
 
 
 @pytest.mark.parametrize(
-    ('address', 'port'),
-    [('http://:8000', 8001), ('http://127.0.0.1:9000', 9001), ('http://robots.example.org', 81)],
+    ('address', 'certificate', 'port'),
+    [
+        ('http://:8000', '', 8001),
+        ('http://127.0.0.1:9000', '', 9001),
+        ('http://robots.example.org', '', 81),
+        ('https://robots.example.org', '/etc/hub.pem', 444),
+    ],
 )
-def test_each_hub_gives_its_proxy_orders_at_a_port_of_its_own(configure, address, port):
-    config = configure('http://:8000', address)
+def test_each_hub_gives_its_proxy_orders_at_a_port_of_its_own(
+    configure, address, certificate, port
+):
+    config = configure(address=address, certificate=certificate)
     assert config.ConfigurableHTTPProxy.api_url == f'http://127.0.0.1:{port}'
 
 

@@ -215,10 +215,11 @@ def test_the_participant_of_an_interrupted_check_ends_with_its_cell(lesson, coun
     cell = lesson.send(
         'from my_robot_basics.checks import topic\n'
         "topic('/talk').wait_for()\n"
-        "print('begun')\n"
+        'print(len(participants.own_ports(classroom.enter())))\n'
         "topic('/talk').wait_for(lambda _: False, timeout_sec=60)"
     )
-    lesson.wait_for(lambda: 'begun' in cell.stdout)
+    assert lesson.wait_for(lambda: '\n' in cell.stdout)
+    assert int(cell.stdout) == int(before) + 1
     lesson.manager.interrupt_kernel()
     assert lesson.wait_for(lambda: cell.done)
     assert 'KeyboardInterrupt' in cell.error
