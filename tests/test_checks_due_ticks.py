@@ -53,3 +53,24 @@ def test_a_pattern_of_ticks_is_forgotten_after_a_missing_message_or_other_steps(
     due.note(2 * STEP_NS, messages=1, took_sec=0.001)
     due.note(2 * STEP_NS, messages=0, took_sec=0.001)
     assert not due.is_next(2 * STEP_NS)
+
+
+def test_a_message_may_be_next_from_the_shortest_distance_of_the_last_three_on():
+    due, _ = learned([5, 6, 5])
+    may_be = []
+    for _ in range(6):
+        may_be.append(due.may_be_next(STEP_NS))
+        due.note(STEP_NS, messages=0, took_sec=0.001)
+    assert may_be == [*[False] * 4, True, True]
+
+
+@pytest.mark.parametrize('gaps', [[], [5, 5]])
+def test_a_message_may_always_be_next_before_three_have_come(gaps):
+    due, _ = learned(gaps)
+    assert due.may_be_next(STEP_NS)
+
+
+def test_a_message_may_always_be_next_after_a_change_of_the_steps():
+    due, _ = learned([5, 5, 5])
+    assert not due.may_be_next(STEP_NS)
+    assert due.may_be_next(2 * STEP_NS)

@@ -5,6 +5,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from made_recordings import every, on_wall, recording
 from my_robot_basics.checks import (
@@ -60,6 +61,20 @@ def test_a_timer_that_skips_every_twentieth_message_fails_at_once(monkeypatch):
     )
     with running('leaves_out'), pytest.raises(CheckFailed, match='one message of 20 missing each'):
         topic(TOPIC).record(seconds=60.0).assert_rate(hz=5.0)
+
+
+@pytest.mark.parametrize('step_sec', [0.1, 0.2 / 5.5])
+def test_no_message_counts_as_late_if_a_request_overtakes_its_tick(step_sec):
+    """Each comes in the first tick after its time, also if that is the fifth or sixth by turns."""
+    with running('overtaken'), Watcher() as watcher:
+        recorder = topic(TOPIC).listen(watcher)
+        with SimulatedClock(watcher, needed={'/kinematics_publisher'}) as clock:
+            driven = DrivenTopic(watcher, recorder, clock, hold_sec=0.0)
+            found = drives.drive(driven, seconds=10.0, step_sec=step_sec)
+    ticks = np.rint(rates.times_of(found) / found.step_sec)
+    assert len(ticks) == 51
+    assert found.step_sec == pytest.approx(step_sec)
+    assert np.ptp(ticks - np.arange(51) * 0.2 / found.step_sec) < 0.9
 
 
 def test_an_early_end_that_the_proof_does_not_confirm_counts_as_uneven(monkeypatch):

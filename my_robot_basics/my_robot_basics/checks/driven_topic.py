@@ -70,10 +70,15 @@ class DrivenTopic:
         received = self.recorder.received
         before, start = len(received), time.monotonic()
         is_due = self._due is not None and self._due.is_next(step_ns)
+        may_be_due = self._due is None or self._due.may_be_next(step_ns)
         self.clock.tick(step_ns, until=(lambda: len(received) > before) if is_due else None)
-        took_sec = time.monotonic() - start
         if not is_due:
             self.recorder.take_all()
+        if may_be_due and len(received) == before:
+            # a request may have overtaken the tick: then the second answer comes before the timer
+            self.clock.acknowledge(questions=1)
+            self.recorder.take_all()
+        took_sec = time.monotonic() - start
         if self._patient_sec:
             self._watcher.spin_for(self._patient_sec)
         messages = len(received) - before

@@ -26,6 +26,12 @@ class DueTicks:
         is_known = step_ns == self._step_ns and len(self._gaps) == ALIKE
         return is_known and {*self._gaps} == {self._since + 1} != {1}
 
+    def may_be_next(self, step_ns: int) -> bool:
+        """Whether a message may come in the next tick, or fewer than ALIKE have come so far."""
+        if step_ns != self._step_ns or len(self._gaps) < ALIKE:
+            return True
+        return self._since + 1 >= min(self._gaps)
+
     def note(self, step_ns: int, *, messages: int, took_sec: float) -> None:
         """Learn from a tick: how many messages came in it, and how long it took in wall time."""
         if step_ns != self._step_ns:
