@@ -122,6 +122,48 @@ def test_a_move_that_ends_too_soon_fails_even_if_right_in_finer_steps(monkeypatc
 
 
 @pytest.mark.parametrize(
+    ('seconds', 'why'),
+    [(62.0, 'rest nowhere, and end'), (67.08, 'rest nowhere'), (90.0, 'both joints move at once')],
+)
+def test_an_arm_that_moves_at_the_right_speed_and_ends_late_is_told_so(seconds, why):
+    told = reports(SPEED, seconds=60.0)
+    with pytest.raises(CheckFailed, match=f'saw {seconds:.1f} s: .*{why}'):
+        judge(seconds, reported=told)
+
+
+@pytest.mark.parametrize('speed', [SPEED, 0.9 * SPEED])
+def test_an_arm_that_tells_the_right_speed_gets_a_longer_move_in_finer_steps(monkeypatch, speed):
+    """A rest of a tenth of its time is shorter than the slack of a move of half a second."""
+    tried = []
+    monkeypatch.setattr(
+        arm_speed, '_is_right_in_finer_steps', lambda *args: tried.append(args[-1]) or True
+    )
+    judge(66.0, reported=reports(speed, seconds=66.0))
+    assert tried == [arm_speed.FINER if speed == SPEED else arm_speed.FINEST]
+
+
+@pytest.mark.parametrize(
+    ('took_sec', 'told_rad_per_sec', 'slowness'),
+    [(4.1, 0.3, 1.0), (4.52, 0.3, 1.1), (4.1, 0.25, 1.2), (4.52, 0.0, 1.1), (3.48, 0.0, 0.9)],
+    ids=['right', 'rests', 'slow', 'rests and tells nothing', 'fast and tells nothing'],
+)
+def test_a_move_in_finer_steps_is_slow_if_it_ends_late(
+    monkeypatch, took_sec, told_rad_per_sec, slowness
+):
+    sent = SimpleNamespace(is_over=lambda: True, goal=moves.goal(MINUTE, speed=0.3))
+    arm = SimpleNamespace(
+        start=(0.0, 0.0),
+        time=SimpleNamespace(wait=lambda *_, **__: True),
+        goal=moves.goal,
+        send=lambda goal: sent,
+        seconds=lambda sent: took_sec,
+    )
+    told = SimpleNamespace(rad_per_sec=told_rad_per_sec)
+    monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: told)
+    assert arm_speed._slowness(arm, MINUTE, seconds=4.0) == pytest.approx(slowness)
+
+
+@pytest.mark.parametrize(
     ('slowest_rad_per_sec', 'times', 'is_right'),
     [(0.0, 1.5, True), (0.15, 1.15, False), (10.0, 1.15, False), (0.15, 0.5, True)],
     ids=['at no speed', 'at that speed', 'at every speed', 'stops a little before its goal'],
@@ -145,7 +187,7 @@ def test_finer_steps_show_whether_a_server_is_slow_at_that_speed_alone(
     monkeypatch.setattr(arm_speed, 'bring', lambda arm, position: went.append(position))
     monkeypatch.setattr(arm_speed, '_slowness', slowness)
     monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: SimpleNamespace(rad_per_sec=SPEED))
-    assert IN_FINER_STEPS(arm, sent, MINUTE) == is_right
+    assert IN_FINER_STEPS(arm, sent, MINUTE, arm_speed.FINEST) == is_right
     assert time.step_ns == 50_000_000
     if is_right:  # the check goes on from there
         assert went[-1] == MINUTE
@@ -167,7 +209,7 @@ def test_no_move_in_finer_steps_goes_farther_than_its_goal(monkeypatch, speed, m
     monkeypatch.setattr(arm_speed, 'bring', lambda *_: None)
     monkeypatch.setattr(arm_speed, '_slowness', slowness)
     monkeypatch.setattr(arm_speed, 'reported_speed', lambda *_: SimpleNamespace(rad_per_sec=speed))
-    assert IN_FINER_STEPS(arm, sent, MINUTE)
+    assert IN_FINER_STEPS(arm, sent, MINUTE, arm_speed.FINEST)
     assert len(made) == moves_made
     assert all(0.0 < position[0] <= MINUTE[0] for position in made)
 

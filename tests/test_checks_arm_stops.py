@@ -12,9 +12,13 @@ from arm_interfaces.action import MoveArm
 GOAL = (1.2, -0.6)
 
 
-def hint(*position):
+def hint(*position, told=()):
     """Return why a goal from (0, 0) to GOAL can't have been stopped there; '' if it can."""
-    sent = SimpleNamespace(result=MoveArm.Result(position=position), feedback=list, sent_ns=0)
+    sent = SimpleNamespace(
+        result=MoveArm.Result(position=position),
+        feedback=lambda: [(0, MoveArm.Feedback(position=each)) for each in told],
+        sent_ns=0,
+    )
     arm = SimpleNamespace(server=SimpleNamespace(log=SimpleNamespace(raised=lambda since_ns: '')))
     try:
         expect_on_the_way(arm, sent, GOAL, start=(0.0, 0.0))
@@ -41,6 +45,25 @@ def test_a_result_that_is_not_on_the_way_is_named_by_its_mistake(position, why):
     found = hint(*position)
     assert why in found
     assert bool(found) == bool(why)
+
+
+@pytest.mark.parametrize(
+    ('position', 'told', 'is_right'),
+    [
+        ((0.0, -0.3), [(0.0, -0.1), (0.0, -0.29)], True),
+        ((0.0, -0.3), [(0.0, -0.1), (0.0, -0.2)], False),
+        ((0.0, -0.3), [], False),
+        # it has not moved, or far beyond its way
+        ((0.0, 0.0), [(0.0, 0.0)], False),
+        ((0.0, -2.0), [(0.0, -2.0)], False),
+        ((28.07, -14.04), [(28.07, -14.04)], False),
+    ],
+)
+def test_an_arm_may_be_stopped_before_its_far_joint_moves_if_its_feedback_says_so(
+    position, told, is_right
+):
+    """One that moves joint2 first, and then joint1, loses the points of the feedback."""
+    assert (hint(*position, told=told) == '') == is_right
 
 
 @pytest.mark.parametrize('looks_sec', [0.5, 1.0])

@@ -40,6 +40,8 @@ class FollowedClock(Enum):
 
     DRIVEN = auto()
     """The clock of its node, which a check drives."""
+    DRIVEN_FINELY = auto()
+    """The same, if the server adds up steps that are much shorter than those of the check."""
     WALL = auto()
     """The wall clock, or a clock that a check can't drive during a move."""
     BOTH = auto()

@@ -11,8 +11,9 @@ from my_robot_basics.checks.arm_results import (
     is_near,
     why_no_success,
 )
-from my_robot_basics.checks.arm_speed import FROM_HERE, expect_no_slow_move, expect_speed
+from my_robot_basics.checks.arm_speed import expect_no_slow_move, expect_speed
 from my_robot_basics.checks.robot_time import DUE_SEC, DrivenTime
+from my_robot_basics.checks.speed_hints import FROM_HERE
 from my_robot_basics.checks.watched_arm import HASTE_SEC, Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail
 

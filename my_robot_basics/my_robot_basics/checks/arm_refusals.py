@@ -22,6 +22,8 @@ EARLY_PART = 0.8
 """A move that ends before this part of its time was stopped."""
 MOST_TIMES, MORE_SEC = 3.0, 1.0
 CLIENT_SEC = 2.0
+SLOW_SPEED, SLOW_RAD = 0.005, 0.01
+"""A speed that has to be accepted, in rad/s, and the way of that goal: the move takes 2 s."""
 
 
 def expect_rejects(action: Action, *goals: MoveArm.Goal) -> None:
@@ -41,11 +43,23 @@ def expect_rejects(action: Action, *goals: MoveArm.Goal) -> None:
 
 
 def expect_accepts(action: Action, *positions: Pose) -> None:
-    """Expect goals to these positions (rad) to be accepted, in this order. Raises CheckFailed."""
+    """Expect goals to these positions (rad) to be accepted, in this order, and then a slow one.
+
+    Raises CheckFailed.
+    """
 
     def accepts(arm: WatchedArm) -> None:
         for position in positions:
             bring_in_haste(arm, position)
+        first, *others = arm.start
+        near = [first - math.copysign(SLOW_RAD, first), *others]
+        expect(
+            arm.server.send(goal(near, speed=SLOW_SPEED)).is_accepted,
+            expected=f'a goal at {SLOW_SPEED:g} rad/s to be accepted',
+            seen='it rejected',
+            hint='every speed above 0 is allowed: check goal.speed > 0, and nothing else',
+            cause='a goal with a low speed is rejected',
+        )
 
     look(action, accepts, start=(0.0, 0.0))
 

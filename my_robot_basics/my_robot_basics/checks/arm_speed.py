@@ -4,9 +4,10 @@ import math
 from typing import NoReturn
 
 from my_robot_basics.checks.action_ends import SentGoal
-from my_robot_basics.checks.arm_progress import BY_TIME, bring, is_under_way
+from my_robot_basics.checks.arm_progress import bring, is_under_way
 from my_robot_basics.checks.reported_speed import FEWEST, ReportedSpeed, reported_speed
 from my_robot_basics.checks.robot_time import DrivenTime
+from my_robot_basics.checks.speed_hints import JUMP_SEC, why_speed
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import CheckFailed, fail
 
@@ -31,11 +32,6 @@ FINER = 0.002, 4.0
 SLOW_PART = 0.5
 """If the feedback shows less than this part of the speed, a busy machine is not the cause."""
 MOST_TIMES = 3.0
-JUMP_SEC = 0.3
-"""If a move takes no longer than this, the arm jumps to its goal."""
-ALIKE = 0.03
-"""How near a wrong speed has to be to that of a known mistake, as a part of it."""
-FROM_HERE = 'start from where the arm is, at each goal'
 
 
 def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
@@ -63,9 +59,14 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     if is_in_time:
         seconds = wanted_sec * sent.goal.speed / told.rad_per_sec
     may_be_right = wanted_sec < seconds or is_in_time
-    if may_be_right and arm.time.is_driven and _is_right_in_finer_steps(arm, sent, position):
-        return
-    _fail_speed(arm, sent, position, seconds=seconds, wanted_sec=wanted_sec, doubt=doubt)
+    if may_be_right and arm.time.is_driven:
+        # an arm that tells the right speed adds up no steps, but may stand still on its way
+        finer = FINER if is_told_right else _finer_steps(arm, sent, position)
+        if _is_right_in_finer_steps(arm, sent, position, finer):
+            return
+    rests = is_told_right and off_sec > 0.0
+    why = why_speed(arm, position, sent.goal.speed, seconds=seconds, rests=rests)
+    _fail_speed(arm, sent, position, why, seconds=seconds, wanted_sec=wanted_sec, doubt=doubt)
 
 
 def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
@@ -80,7 +81,7 @@ def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None
         fail(
             expected=f'{wanted_sec:.1f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
             seen=f'{seconds:.0f} s, as the feedback tells',
-            hint=_why_speed(arm, position, seconds * sent.goal.speed, seconds=seconds),
+            hint=why_speed(arm, position, sent.goal.speed, seconds=seconds),
             cause='the arm is too slow',
         )
 
@@ -105,11 +106,19 @@ def _is_right(arm: WatchedArm, told: ReportedSpeed, speed: float) -> bool:
     return 1.0 / (1.0 + tolerance + late) <= times <= 1.0 + tolerance
 
 
-def _is_right_in_finer_steps(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
-    assert isinstance(arm.time, DrivenTime)
+def _finer_steps(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[float, float]:
+    """FINEST, or FINER if there is too little feedback for that."""
     rate_hz = len(sent.feedback()) / arm.seconds(sent)
     tells = reported_speed(arm, sent, position).rad_per_sec and rate_hz * FINEST[1] >= FEWEST
-    step_sec, seconds = FINEST if tells else FINER
+    return FINEST if tells else FINER
+
+
+def _is_right_in_finer_steps(
+    arm: WatchedArm, sent: SentGoal, position: Pose, finer: tuple[float, float]
+) -> bool:
+    """`finer`: the step of the clock and the time of the move, in seconds."""
+    assert isinstance(arm.time, DrivenTime)
+    step_sec, seconds = finer
     bring(arm, arm.start)
     former_ns, arm.time.step_ns = arm.time.step_ns, round(step_sec * 1e9)
     try:
@@ -135,17 +144,19 @@ def _slowness(arm: WatchedArm, position: Pose, *, seconds: float) -> float:
     sent = arm.send(arm.goal(position, speed=far_rad(arm.start, position) / seconds))
     if not arm.time.wait(sent.is_over, seconds=MOST_TIMES * seconds):
         return MOST_TIMES
-    told = reported_speed(arm, sent, position)
-    if told.rad_per_sec:
-        return sent.goal.speed / told.rad_per_sec
     off_sec = arm.seconds(sent) - seconds
-    return 1.0 + math.copysign(max(0.0, abs(off_sec) - SLACK_SEC), off_sec) / seconds
+    by_time = 1.0 + math.copysign(max(0.0, abs(off_sec) - SLACK_SEC), off_sec) / seconds
+    told = reported_speed(arm, sent, position)
+    if not told.rad_per_sec or by_time > 1.0 + TOLERANCE:
+        return by_time
+    return sent.goal.speed / told.rad_per_sec
 
 
 def _fail_speed(
     arm: WatchedArm,
     sent: SentGoal,
     position: Pose,
+    why: str,
     *,
     seconds: float,
     wanted_sec: float,
@@ -156,28 +167,7 @@ def _fail_speed(
     fail(
         expected=f'{wanted_sec:.{digits}f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
         seen=f'{seconds:.{digits}f} s',
-        hint=(seconds <= JUMP_SEC and arm.why_too_soon(sent))
-        or _why_speed(arm, position, seconds * sent.goal.speed, seconds=seconds),
+        hint=(seconds <= JUMP_SEC and arm.why_too_soon(sent)) or why,
         cause='the arm is too slow' if wanted_sec < seconds else 'the arm is too fast',
         doubt=doubt,
     )
-
-
-def _why_speed(arm: WatchedArm, position: Pose, product: float, *, seconds: float) -> str:
-    """Advice; `product`: the time of the move × the requested speed, in rad."""
-    ways = [abs(b - a) for a, b in zip(arm.start, position, strict=True)]
-    causes = {
-        math.radians(max(ways)): 'the speed is in rad/s already, as the positions are in rad',
-        math.degrees(max(ways)): 'the speed is in rad/s already, as the positions are in rad',
-        math.hypot(*ways): 'the speed is that of the faster joint, not of both together',
-        sum(ways): 'both joints move at once: start and arrive together',
-        min(ways): 'the speed is that of the joint that has farther to go',
-        max(map(abs, position)): FROM_HERE,
-    }
-    wrong = {rad: why for rad, why in causes.items() if abs(rad - max(ways)) > ALIKE * rad}
-    found = [why for rad, why in wrong.items() if abs(product - rad) <= ALIKE * rad]
-    if found:
-        return found[0]
-    if seconds <= JUMP_SEC:
-        return 'the arm jumps: move it a little in each step, by speed × the time of the step'
-    return BY_TIME

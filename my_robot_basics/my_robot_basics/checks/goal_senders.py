@@ -1,12 +1,14 @@
 """A node that sends goals: meet it, expect one goal for a message, and say why none comes."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 from my_robot_basics.checks.callbacks import CallbackErrors
 from my_robot_basics.checks.scripted_action import ReceivedGoal
 from my_robot_basics.checks.services import answers_parameters
 from my_robot_basics.exchange.values import type_name
-from my_robot_basics.feedback.errors import expect
+from my_robot_basics.feedback.errors import expect, shorten
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
@@ -36,6 +38,34 @@ def expect_one(goals: Collection[ReceivedGoal], *, asked_on: str) -> None:
         f'{asked_on} once, in one node',
         cause='a message leads to several goals',
     )
+
+
+@dataclass
+class AskedGoals:
+    """Which goals the messages on a topic ask for."""
+
+    asked_on: str
+    messages: list[Any] = field(default_factory=list)
+    """The messages that were published, in order."""
+    is_for: Callable[[Any, Any], bool] = lambda message, request: True
+    """Whether a goal's request is what a message asks for."""
+    _since: int | None = None
+    """How many goals had come when the client had certainly processed the first message. Those
+    before may be for messages that it received before the check."""
+
+    def expect_no_others(self, goals: Sequence[ReceivedGoal]) -> None:
+        """No goal comes that no message asks for. Raises CheckFailed."""
+        if self._since is None:
+            self._since = len(goals) or None
+        for goal in goals[self._since or 0 :]:
+            expect(
+                any(self.is_for(message, goal.request) for message in self.messages),
+                expected=f'no goal but those for the messages on {self.asked_on}',
+                seen=shorten(goal.request),
+                hint=f'send a goal in the callback of {self.asked_on}, for its message, and '
+                'nowhere else',
+                cause='a goal is sent that no message asks for',
+            )
 
 
 def why_no_goal(

@@ -144,6 +144,7 @@ def expect_cancel_in_spite_of_a_second_goal(
 def ask(server: ServedAction, position: Pose, *, accepts: bool = True) -> ReceivedGoal:
     """Publish a position; return the goal that the client sends for it. Raises CheckFailed."""
     server.accepts, server.reports = accepts, half_way
+    server.asked.is_for = lambda pose, request: _is_near(request.position, pose.position)
 
     def is_it(request: MoveArm.Goal) -> bool:
         return _is_near(request.position, position) and abs(request.speed - SPEED) < EXACT

@@ -6,8 +6,8 @@ from typing import Any
 from rclpy.publisher import Publisher
 from std_msgs.msg import Bool
 
+from my_robot_basics.checks import goal_senders
 from my_robot_basics.checks.callbacks import CallbackErrors
-from my_robot_basics.checks.goal_senders import expect_one, meet_client, why_no_goal, why_silent
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
 from my_robot_basics.checks.services import answers_parameters
@@ -19,8 +19,8 @@ from my_robot_basics.graph.watcher import Watcher
 REPLY_SEC = 4.0
 """How long to wait for a goal, a request to cancel or an outcome, in s of free time."""
 QUIET_SEC, SOON_SEC, MORE_SEC = 0.5, 0.25, 0.05
-"""How long to wait for what must not come: normally; if the node has already processed everything;
-for a second message of a callback that has published one. In s of wall time."""
+"""How long to wait for what must not come, in s of wall time: normally; if the node has already
+processed everything; for a second message of a callback that has published one."""
 AGAIN_SEC = 1.0
 """A new client may lose a goal, so its message is published again after AGAIN_SEC."""
 
@@ -44,6 +44,7 @@ class ServedAction(ScriptedActionServer):
         self._raised = CallbackErrors(set(outcomes.publishers()))
         self.publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
+        self.asked = goal_senders.AskedGoals(asked_on)
         self._for_last: Callable[[], list[ReceivedGoal]] = list  # the goals for the last message
         self._was_away = False  # whether a message without a goal so far found no server
         self._mute: set[str] = set()  # nodes without an answer about parameters: not asked again
@@ -52,6 +53,7 @@ class ServedAction(ScriptedActionServer):
     def publish(self, message: Any) -> None:
         """Publish a message that should lead to a goal, without waiting for the goal."""
         self._was_away = self._was_away or self._server is None
+        self.asked.messages.append(message)
         self._publish(self.asked_on, message)
 
     def ask(
@@ -64,7 +66,7 @@ class ServedAction(ScriptedActionServer):
         """
         self.is_expected = is_it
         if self._known_starts < self.starts:
-            meet_client(self.watcher, self.name)
+            goal_senders.meet_client(self.watcher, self.name)
         before, self._before = len(self.goals), len(self._outcomes.received)
 
         def found() -> list[ReceivedGoal]:
@@ -102,7 +104,7 @@ class ServedAction(ScriptedActionServer):
                 return
             # the message may have arrived before the client knew that its goal was accepted
             self._publish(self.cancelled_on, Bool(data=True))
-        expect_one(self._for_last(), asked_on=self.asked_on)
+        goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
         fail(
             expected=f'a request to cancel the goal for True on {self.cancelled_on}',
             seen=f'none in {REPLY_SEC:g} s',
@@ -111,8 +113,7 @@ class ServedAction(ScriptedActionServer):
         )
 
     def is_cancelled(self, goal: ReceivedGoal, *, soon: bool) -> bool:
-        """Whether the client cancels the goal within a short (`soon`) or longer time."""
-        # longer than any such request took so far: a client may cancel each goal after a while
+        """Whether the client cancels the goal soon, or later than any such request so far."""
         quiet_sec = SOON_SEC if soon else QUIET_SEC + 1.5 * self._cancelled_sec
         return self.watcher.spin_until(lambda: bool(goal.cancels), timeout_sec=quiet_sec)
 
@@ -122,15 +123,14 @@ class ServedAction(ScriptedActionServer):
         def new() -> list[str]:
             return [message.data for message in self._outcomes.messages()[self._before :]]
 
-        topic_name = self._outcomes.topic_name
         if self.watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
             self._raised.expect_none()
             self.watcher.spin_for(MORE_SEC)
-            expect_one(self._for_last(), asked_on=self.asked_on)
+            goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
             words = new()
             expect(
                 len(words) == 1 or len(self._outcomes.received) <= self.count_over(),
-                expected=f"one outcome of a goal, '{word}', on {topic_name}",
+                expected=f"one outcome of a goal, '{word}', on {self._outcomes.topic_name}",
                 seen=student_text(shorten(words)),
                 hint='publish one word for each goal: that for the status of its result',
                 cause='several outcomes of one goal are published',
@@ -138,7 +138,7 @@ class ServedAction(ScriptedActionServer):
             return
         others, none = new(), f'none in {REPLY_SEC:g} s'
         fail(
-            expected=f"'{word}' on {topic_name}",
+            expected=f"'{word}' on {self._outcomes.topic_name}",
             seen=f"'{student_text(shorten(others[-1]))}'" if others else none,
             hint=hint(others[-1]) if others else self._why_silent(hint('')),
             cause='another outcome is published' if others else 'no outcome is published',
@@ -180,7 +180,8 @@ class ServedAction(ScriptedActionServer):
         """Wait until the client has processed what was sent before. Raises CheckFailed."""
         self.answering_nodes()
         self.watcher.spin_for(SOON_SEC if self._mute else 0.0)
-        expect_one(self._for_last(), asked_on=self.asked_on)
+        goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
+        self.asked.expect_no_others(self.goals)
 
     def answering_nodes(self) -> set[str]:
         """Full names of the client's nodes whose parameter services have always answered."""
@@ -190,10 +191,10 @@ class ServedAction(ScriptedActionServer):
 
     def _why_no_goal(self) -> str:
         how = {'asked_on': self.asked_on, 'was_away': self._was_away, **self._client_state()}
-        return why_no_goal(self.watcher, self.name, self.type, **how)
+        return goal_senders.why_no_goal(self.watcher, self.name, self.type, **how)
 
     def _why_silent(self, hint: str) -> str:
-        return why_silent(self.watcher, hint, **self._client_state())
+        return goal_senders.why_silent(self.watcher, hint, **self._client_state())
 
     def _client_state(self) -> dict[str, Any]:
         return {'node_names': self._outcomes.publishers(), 'raised': self._raised}
