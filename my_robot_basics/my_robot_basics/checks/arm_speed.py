@@ -1,7 +1,6 @@
 """Whether a move took as long as it should, however long the server's steps are."""
 
 import math
-from typing import NoReturn
 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.arm_progress import bring, is_under_way
@@ -58,15 +57,23 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     doubt = CheckFailed if is_proven else arm.doubt()
     if is_in_time:
         seconds = wanted_sec * sent.goal.speed / told.rad_per_sec
+    far = far_rad(arm.start, position)
+    rests = is_told_right and off_sec > 0.0
+    why = why_speed(arm, position, sent.goal.speed, seconds=seconds, rests=rests)
     may_be_right = wanted_sec < seconds or is_in_time
     if may_be_right and arm.time.is_driven:
         # an arm that tells the right speed adds up no steps, but may stand still on its way
         finer = FINER if is_told_right else _finer_steps(arm, sent, position)
         if _is_right_in_finer_steps(arm, sent, position, finer):
             return
-    rests = is_told_right and off_sec > 0.0
-    why = why_speed(arm, position, sent.goal.speed, seconds=seconds, rests=rests)
-    _fail_speed(arm, sent, position, why, seconds=seconds, wanted_sec=wanted_sec, doubt=doubt)
+    digits = 1 if abs(seconds - wanted_sec) >= 0.1 else 2
+    fail(
+        expected=f'{wanted_sec:.{digits}f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
+        seen=f'{seconds:.{digits}f} s',
+        hint=(seconds <= JUMP_SEC and arm.why_too_soon(sent)) or why,
+        cause='the arm is too slow' if wanted_sec < seconds else 'the arm is too fast',
+        doubt=doubt,
+    )
 
 
 def expect_no_slow_move(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
@@ -150,24 +157,3 @@ def _slowness(arm: WatchedArm, position: Pose, *, seconds: float) -> float:
     if not told.rad_per_sec or by_time > 1.0 + TOLERANCE:
         return by_time
     return sent.goal.speed / told.rad_per_sec
-
-
-def _fail_speed(
-    arm: WatchedArm,
-    sent: SentGoal,
-    position: Pose,
-    why: str,
-    *,
-    seconds: float,
-    wanted_sec: float,
-    doubt: type[CheckFailed],
-) -> NoReturn:
-    far = far_rad(arm.start, position)
-    digits = 1 if abs(seconds - wanted_sec) >= 0.1 else 2
-    fail(
-        expected=f'{wanted_sec:.{digits}f} s for {far:.2f} rad at {sent.goal.speed:.3g} rad/s',
-        seen=f'{seconds:.{digits}f} s',
-        hint=(seconds <= JUMP_SEC and arm.why_too_soon(sent)) or why,
-        cause='the arm is too slow' if wanted_sec < seconds else 'the arm is too fast',
-        doubt=doubt,
-    )

@@ -6,8 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-import numpy as np
-
 from my_robot_basics.checks import (
     callbacks,
     periods,
@@ -169,8 +167,7 @@ class Recording:
         """Whether the wall clock shows a faster rate for certain: a busy machine only delays."""
         if self.clock != 'wall' or self.was_busy:
             return False
-        times_sec = np.array([0.0, *(sample.time_sec for sample in self.messages)])
-        return periods.come_too_often(times_sec, hz, seconds=self.seconds)
+        return periods.come_too_often(rates.times_of(self), hz, seconds=self.seconds)
 
     def _expect_one_publisher(self) -> None:
         names = set(self.publishers)
