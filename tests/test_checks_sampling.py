@@ -270,7 +270,7 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
         try:
             recording.assert_rate(hz=5.0)
         except Starved:  # on the wall clock, a busy machine is a doubt: grading looks again
-            assert out == IGNORES
+            assert recording.clock == 'wall'
             out = ''
     assert capfd.readouterr() == (out, '')
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
-from my_robot_basics.checks import late_rates, one_step
+from my_robot_basics.checks import one_step
 from my_robot_basics.checks import parameter_refusals as refusals
 from my_robot_basics.checks.parameters import NodeParameters, node_parameters
 from my_robot_basics.checks.rate_failure import TOO_FAST_TIMES
@@ -90,7 +90,6 @@ class RateParameter:
                 if beside_another and _are_near(recording.rate_hz, before_hz):
                     one_step.fail_unchanged(self.name, before_hz, rate_hz, doubt=type(failed))
                 self._explain(failed, recording, before_hz, rate_hz)
-            late_rates.expect_soon(recording, self.name, before_hz, rate_hz)
 
     def expect_refuses(self, *rates_hz: float) -> None:
         """Each of these values is refused with a reason; the value and the rate do not change.

@@ -60,9 +60,7 @@ class Recording:
     is_makeshift: bool = False
     """Whether it is on the wall clock only because a busy machine was too slow for the robot's."""
     proof: 'Recording | None' = field(default=None, repr=False)
-    """A second recording on the simulated clock, with other steps."""
-    uneven: 'Recording | None' = field(default=None, repr=False)
-    """The recording just before on the simulated clock, if its messages were uneven."""
+    """A second recording on the simulated clock, with steps of another size."""
     look_again: Callable[[float], 'Recording'] | None = field(default=None, repr=False)
     """Makes another recording of that many seconds on the wall clock."""
 

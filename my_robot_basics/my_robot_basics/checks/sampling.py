@@ -89,12 +89,9 @@ def _record_patiently(
     if isinstance(first, Uneven) and (shown := _record_pattern(topic, first, step_sec=step_sec)):
         return shown
     found = _record_in_steps(topic, seconds=SECONDS_LEAST, step_sec=step_sec)
-    if isinstance(found, Recording) and seconds > SECONDS_LEAST:
-        enough_sec = min(seconds, SECONDS_ENOUGH)
-        found = _record_in_steps(topic, seconds=enough_sec, step_sec=step_sec)
-    if isinstance(found, Recording) and isinstance(first, Uneven):
-        return replace(found, uneven=first.recording)
-    return found
+    if isinstance(found, Inconclusive) or seconds <= SECONDS_LEAST:
+        return found
+    return _record_in_steps(topic, seconds=min(seconds, SECONDS_ENOUGH), step_sec=step_sec)
 
 
 def _record_in_steps(
