@@ -8,6 +8,7 @@ from goal_clients import WORDS, MoveArmClient, check_cancels, check_outcomes
 from my_robot_basics.checks import CheckFailed, served_action
 from nodes.running import STOPS
 from rclpy.action import ActionClient
+from sensor_msgs.msg import JointState
 
 from arm_interfaces.action import MoveArm
 
@@ -273,6 +274,15 @@ class KeepsTheRejectedOne(MoveArmClient):
         self.goal_handle = future.result()
 
 
+class Retreats(MoveArmClient):
+    """Sends the arm home by itself when there is an obstacle."""
+
+    def obstacle(self, message):
+        if message.data and self.goal_handle is not None:
+            self.send(JointState(position=[0.0, 0.0]))
+        super().obstacle(message)
+
+
 class WritesTwoLs(MoveArmClient):
     def tell(self, word):
         super().tell('cancelled' if word == 'canceled' else word)
@@ -299,6 +309,10 @@ WRONG_CANCELS = [
         r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',
     ),
     (TellsBeforeTheServer, "no outcome while the server has not said.*, saw 'canceled': publish"),
+    (
+        Retreats,
+        r'no goal but those for the messages on /goal_pose, saw .*: send a goal in the cal',
+    ),
     (KeepsTheRejectedOne, r'expected a request to cancel .*saw none'),
     (WritesTwoLs, "expected 'canceled' on .*saw 'cancelled': write canceled with one l"),
     (BlindToObstacles, '/move_arm_client uses /obstacles, so compare the spelling'),

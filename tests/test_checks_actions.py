@@ -1,12 +1,13 @@
 """A node that serves an action passes, however it waits."""
 
+import contextlib
 import math
 import random
 import threading
 import time
 
 import pytest
-from my_robot_basics.checks import action, moves
+from my_robot_basics.checks import CheckFailed, action, moves
 from my_robot_basics.checks.actions import FollowedClock
 from my_robot_basics.checks.clock import SimulatedClock
 from nodes.running import STOPS, imported, running
@@ -83,6 +84,28 @@ class FixedSteps(MoveArmServer):
         self.part = min(1.0, done / self.seconds) if self.seconds else 1.0
         self.position = self.on_the_way()
         self.report(handle)
+
+
+class ShortSteps(MoveArmServer):
+    """Adds speed × 0.01 s in a loop that sleeps for 0.01 s: a fifth of the check's usual step."""
+
+    async def sleep(self, seconds):
+        await super().sleep(0.01)
+
+    def step(self, handle):
+        done = self.part * self.seconds + 0.01
+        self.part = min(1.0, done / self.seconds) if self.seconds else 1.0
+        self.position = self.on_the_way()
+        self.report(handle)
+
+
+class RestsFirst(MoveArmServer):
+    """Rests for five seconds before a move, which is too late, but no matter of its steps."""
+
+    async def execute(self, handle):
+        if math.dist(handle.request.position, self.position) > 0.5 * handle.request.speed:
+            await self.sleep(5.0)
+        return await super().execute(handle)
 
 
 class CoroutineCallbacks(MoveArmServer):
@@ -189,6 +212,7 @@ ON_ITS_CLOCK = [
     TimerDriven,
     HandlesAccepted,
     FixedSteps,
+    ShortSteps,
     CoroutineCallbacks,
     Threads,
     ThreadsWithARate,
@@ -235,6 +259,24 @@ def test_a_move_of_a_robot_minute_is_checked_on_the_simulated_clock(
     assert move_arm.known.clocks == {'/move_arm_server': FollowedClock.DRIVEN}
     assert sum(ticks) > 60e9
     assert least < len(ticks) < most
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'clock'),
+    [
+        (ShortSteps, FollowedClock.DRIVEN_FINELY),
+        (FixedSteps, FollowedClock.DRIVEN),
+        (RestsFirst, FollowedClock.DRIVEN),
+    ],
+)
+def test_a_server_that_adds_up_short_steps_gets_short_steps_of_the_clock(run, node_class, clock):
+    """With the usual ones, it was told that its arm is five times too slow."""
+    run(node_class)
+    move_arm = action('/move_arm', MoveArm)
+    late = pytest.raises(CheckFailed, match='let it rest nowhere')
+    with late if node_class is RestsFirst else contextlib.nullcontext():
+        moves.expect_reaches(move_arm, (1.2, -0.6), speed=0.1)
+    assert move_arm.known.clocks == {'/move_arm_server': clock}
 
 
 @pytest.fixture

@@ -1,9 +1,11 @@
 """A typical mistake in how an action server moves or what it publishes fails only that check."""
 
+import contextlib
 import time
 
 import pytest
 from arm_checks import failures
+from my_robot_basics.checks import CheckFailed, action, moves
 from nodes.running import imported
 
 from arm_interfaces.action import MoveArm
@@ -56,6 +58,20 @@ class TooSlow(MoveArmServer):
     def begin(self, handle):
         super().begin(handle)
         self.seconds *= 1.2
+
+
+class EndsLate(MoveArmServer):
+    """Moves as it should, and reports from its goal for a fifth of its time before it ends."""
+
+    async def execute(self, handle):
+        self.begin(handle)
+        while self.passed_sec() < 1.2 * self.seconds and not handle.is_cancel_requested:
+            await self.sleep(STEP_SEC)
+            self.step(handle)
+        return self.finish(handle)
+
+    def passed_sec(self):
+        return (self.get_clock().now() - self.began).nanoseconds / 1e9
 
 
 class SpeedOfBoth(MoveArmServer):
@@ -207,6 +223,7 @@ WRONG = [
     (AbortsWhereItIs, 'reaches', 'the arm is there already, and so is at the goal: call goal_'),
     (TooFast, 'reaches', 'expected .* s for 1.20 rad .*: in each step, move by speed'),
     (TooSlow, 'reaches', 'expected .* s for 1.20 rad .*: in each step, move by speed'),
+    (EndsLate, 'reaches', 'moves at the right speed: let it rest nowhere, and end the goal once'),
     (SpeedOfBoth, 'reaches', 'the speed is that of the faster joint, not of both together'),
     (
         TakesTheWallClocksTime,
@@ -239,3 +256,18 @@ def test_a_mistake_fails_the_expected_checks_and_names_its_cause(run, node_class
     assert ' '.join(found) == checks, found
     with pytest.raises(AssertionError, match=message):
         raise AssertionError(next(iter(found.values())))
+
+
+class RejectsSlow(MoveArmServer):
+    def is_possible(self, goal):
+        return super().is_possible(goal) and goal.speed >= 0.01
+
+
+@pytest.mark.parametrize('node_class', [RejectsSlow, MoveArmServer])
+def test_each_speed_above_zero_has_to_be_accepted(run, node_class):
+    run(node_class)
+    wrong = pytest.raises(
+        CheckFailed, match=r'a goal at 0\.005 rad/s to be accepted, saw it rejected: every speed'
+    )
+    with wrong if node_class is RejectsSlow else contextlib.nullcontext():
+        moves.expect_accepts(action('/move_arm', MoveArm), (1.56, -2.08), (-1.56, 2.08))

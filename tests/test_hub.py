@@ -3,6 +3,7 @@
 import asyncio
 import json
 import os
+import re
 import runpy
 import shutil
 import signal
@@ -211,6 +212,30 @@ def test_server_and_hub_pin_one_jupyterhub_and_no_pin_of_the_course_is_repeated(
     locked = json.loads((DEPLOY / 'package-lock.json').read_text())['packages']
     assert all('integrity' in each for name, each in locked.items() if name)
     assert not any('resolved' in each for each in locked.values())
+
+
+@pytest.mark.starts
+@pytest.mark.skipif(os.geteuid() != 0, reason='install runs as root')
+def test_install_stops_with_the_remedy_if_no_room_can_be_made_for_an_ordinary_user(tmp_path):
+    hub, checkout, commands = (tmp_path / name for name in ('hub', 'checkout', 'bin'))
+    for folder in (hub, checkout, commands):
+        folder.mkdir()
+    for command in (checkout / 'course', commands / 'runuser'):  # with which it tries bwrap
+        command.write_text('#!/bin/sh\nexit 1\n')
+        command.chmod(0o755)
+    settings = (DEPLOY / 'class.toml').read_text()
+    for name, value in {'instructor': 'nobody', 'checkout': str(checkout)}.items():
+        settings = re.sub(rf'(?m)^{name} = .*$', f'{name} = {json.dumps(value)}', settings)
+    (hub / 'class.toml').write_text(settings)
+    done = subprocess.run(
+        [DEPLOY / 'install', '--no-start', hub],
+        env={'PATH': f'{commands}:{os.environ["PATH"]}', 'PYTHON': sys.executable},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 1
+    assert 'bubblewrap makes no room for an ordinary user. On Ubuntu 24.04, put' in done.stderr
+    assert not (hub / 'venv').exists()
 
 
 def test_install_copies_each_file_that_the_configuration_needs():

@@ -14,7 +14,7 @@ from my_robot_basics.checks.arm_progress import bring, is_under_way, wait_for_pr
 from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.open_action import OpenAction
-from my_robot_basics.checks.reported_speed import is_of_wall_time
+from my_robot_basics.checks.reported_speed import is_of_wall_time, reported_speed
 from my_robot_basics.checks.robot_time import DrivenTime
 from my_robot_basics.checks.services import PARAMETERS_SEC
 from my_robot_basics.checks.watched_arm import HASTE_SEC, STEP_NS, Pose, WatchedArm, goal
@@ -112,7 +112,9 @@ def _measure_clock_of_move(arm: WatchedArm) -> FollowedClock:
             return FollowedClock.DRIVEN
         if not _moves_with_clock(driven, sent, probe.position):
             return FollowedClock.WALL
-        is_fine = _keeps_up_with_fine_steps(driven.time, sent)
+        told = reported_speed(driven, sent, probe.position).rad_per_sec
+        is_slow = told < FINE_PART * probe.speed  # and has not only rested for a while
+        is_fine = is_slow and _keeps_up_with_fine_steps(driven.time, sent)
         return FollowedClock.DRIVEN_FINELY if is_fine else FollowedClock.DRIVEN
 
     try:
