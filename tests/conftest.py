@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from grader.course import Course
     from grader.kernels.kernels import GradingKernel
     from grader.sandbox.sandbox import Sandbox
+
+# what several test modules share: an assertion there shows its values, too, when it fails
+SHARED = [path.stem for path in Path(__file__).parent.glob('*.py') if path.stem[:5] != 'test_']
+pytest.register_assert_rewrite(*SHARED)
 
 # a test must not fail because the machine is busy
 settings.register_profile('busy', deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -198,29 +202,47 @@ def nobody_stays(request: pytest.FixtureRequest) -> Iterator[None]:
     assert not left, f'the tests of this file left nodes behind: {", ".join(left)}'
 
 
-def _answers() -> dict[signal.Signals, object]:
-    stopping = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
-    return {number: signal.getsignal(number) for number in stopping}
+@dataclass(frozen=True)
+class Answers:
+    """How this process answers signals."""
+
+    handlers: dict[signal.Signals, object]
+    wakeup_fd: int
+    """Where Python writes the number of each signal, for an event loop; -1: nowhere."""
+
+    @classmethod
+    def now(cls) -> 'Answers':
+        stopping = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+        wakeup_fd = signal.set_wakeup_fd(-1)
+        signal.set_wakeup_fd(wakeup_fd, warn_on_full_buffer=False)
+        return cls({number: signal.getsignal(number) for number in stopping}, wakeup_fd)
+
+    def restore(self) -> None:
+        for number, handler in self.handlers.items():
+            signal.signal(number, handler)
+        signal.set_wakeup_fd(self.wakeup_fd, warn_on_full_buffer=False)
 
 
 @pytest.fixture(scope='module', autouse=True)
 def as_the_file_before() -> Iterator[None]:
-    """Check that a file of tests does not change signal handlers for the files after it."""
-    former = _answers()
+    """Check that a file of tests does not change the answers to signals for the files after it."""
+    former = Answers.now()
     yield
-    left = _answers()
-    for number, answer in former.items():
-        signal.signal(number, answer)
+    left = Answers.now()
+    former.restore()
     assert left == former, 'the tests of this file left other answers to signals'
 
 
 @pytest.fixture
 def signals() -> Iterator[None]:
-    """Restore the signal handlers that nbclient sets, and leaves if a kernel does not start."""
-    former = _answers()
+    """Restore the answers to signals that nbclient sets, and leaves if a kernel does not start.
+
+    Its event loop is used again: at the next notebook it would handle each signal sent meanwhile,
+    and end that notebook's kernel.
+    """
+    former = Answers.now()
     yield
-    for number, answer in former.items():
-        signal.signal(number, answer)
+    former.restore()
 
 
 # ipykernel does not capture the output of C code if PYTEST_CURRENT_TEST is set, and every kernel
