@@ -21,6 +21,7 @@ def test_an_interrupted_cell_stops_no_node(lesson):
     cell = lesson.run('talker = run(Talker)')
     waiting = lesson.send('print("waiting", flush=True); import time; time.sleep(60)')
     assert lesson.wait_for(lambda: 'waiting' in waiting.stdout)
+    time.sleep(0.3)  # until it waits: IPython may lose an interrupt between two statements
     lesson.manager.interrupt_kernel()
     assert lesson.wait_for(lambda: waiting.done)
     assert 'KeyboardInterrupt' in waiting.error
@@ -125,6 +126,21 @@ if not rclpy.ok(): rclpy.init()""")
     assert lesson.wait_for(lambda: cell.done)
     assert 'silent is stopped' in ' '.join(cell.error.split())
     assert cell.stderr == ''
+
+
+def test_an_interrupt_during_a_flush_leaves_no_lock_that_the_output_thread_needs(lesson):
+    cell = lesson.run("""import signal, threading
+from unittest.mock import patch
+acquire = threading.Condition.__enter__
+def acquire_and_interrupt(condition):  # where Python may raise it
+    acquire(condition)
+    if threading.current_thread() is threading.main_thread():
+        signal.raise_signal(signal.SIGINT)
+with patch('threading.Condition.__enter__', acquire_and_interrupt):
+    print('flushed', flush=True)""")
+    assert cell.done
+    assert cell.stdout == 'flushed\n'
+    assert lesson.value('1 + 1') == '2'
 
 
 MEETING = """class Meeting:

@@ -31,9 +31,12 @@ def let_cells_be_interrupted() -> None:
 
     This changes only the thread in which cells run: a student's own threads spin as before.
     """
+    from ipykernel import iostream  # a kernel has loaded it; others need not
+
     wait = _interruptible(Executor.wait_for_ready_callbacks)
     patch(Executor, 'wait_for_ready_callbacks', wait)
     wait_for_message._rclpy = SimpleNamespace(WaitSet=_InterruptibleWaitSet)
+    vars(iostream)['threading'] = SimpleNamespace(**vars(threading) | {'Event': _Flushed})
     sys.unraisablehook = _sending_again(sys.unraisablehook)
     if sys.version_info < (3, 13):
         patch(threading.Thread, '_wait_for_tstate_lock', _wait_for_end)
@@ -102,6 +105,25 @@ class _InterruptibleWaitSet(rclpy_implementation.WaitSet):
             for add, handle in self._added:
                 add(handle)
             super().wait(int(POLL_SEC * 1e9))
+
+
+class _Flushed:
+    """An event that is set once, without a lock that an interrupt could leave locked.
+
+    When a cell flushes its output, it waits until ipykernel's output thread sets such an event.
+    With `threading.Event`, an interrupt at the wrong moment leaves the event's lock locked: the
+    thread would wait for it forever, and no cell would seem to end any more.
+    """
+
+    def __init__(self) -> None:
+        self._unset = threading.Lock()
+        self._unset.acquire()
+
+    def set(self) -> None:
+        self._unset.release()
+
+    def wait(self, timeout: float) -> bool:
+        return self._unset.acquire(timeout=timeout)
 
 
 def _sending_again(
