@@ -132,6 +132,7 @@ class LateOnce(IKClient):
     def ask(self, target):
         if not self.was_late:
             self.was_late = True
+            self.client.wait_for_service()  # on a busy machine the check's server may come later
             time.sleep(2.0)
         super().ask(target)
 
