@@ -4,7 +4,7 @@
 
 It prints means over some right and wrong sample answers, or those that are named, graded one after
 another: also how often checks ask the student's kernel. Waiting is not counted, so a busy machine
-shows nearly the same. Nothing is asserted.
+shows nearly the same; neither are the programs that kernels start. Nothing is asserted.
 """
 
 import argparse
@@ -18,7 +18,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from measuring import Course, new_course, table
-from sample_class import PATHS, assignment_of
+from package_changes import write
+from sample_class import PATHS, assignment_of, package_of
 
 from grader.judging.execute import execute_exercises
 from grader.kernels.isolation import require_isolation
@@ -96,12 +97,14 @@ def grade(course: Course, name: str, number: int) -> None:
     folder = course.folder('submitted', student, assignment)
     folder.mkdir(parents=True)
     (folder / f'{assignment}.ipynb').write_bytes(PATHS[name].read_bytes())
+    write(package_of(name), folder)
+    packages = [path for path in folder.iterdir() if path.is_dir()]
     template = make_sanitized_template(course, assignment)
     parts = [time.process_time()]
     submission = read_submission(folder, student_id=student, assignment=assignment)
     restored = restore(submission.notebook, template).notebook
     parts.append(time.process_time())
-    graded = asyncio.run(execute_exercises(restored)).notebook
+    graded = asyncio.run(execute_exercises(restored, extra_files=packages)).notebook
     parts.append(time.process_time())
     store(course, submission, graded)
     parts.append(time.process_time())
