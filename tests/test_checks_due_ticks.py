@@ -74,3 +74,22 @@ def test_a_message_may_always_be_next_after_a_change_of_the_steps():
     due, _ = learned([5, 5, 5])
     assert not due.may_be_next(STEP_NS)
     assert due.may_be_next(2 * STEP_NS)
+
+
+def test_a_message_may_be_expected_in_each_tick_of_a_long_step():
+    due, _ = learned([2, 2, 2])
+    due.expect_each(2 * STEP_NS)
+    for _ in range(3):
+        assert due.is_next(2 * STEP_NS)
+        due.note(2 * STEP_NS, messages=1, took_sec=0.001)
+    due.note(2 * STEP_NS, messages=0, took_sec=0.001)
+    assert not due.is_next(2 * STEP_NS)
+
+
+def test_no_message_is_expected_in_each_tick_after_another_step():
+    due, _ = learned([2, 2, 2])
+    due.expect_each(2 * STEP_NS)
+    for _ in range(5):
+        due.note(STEP_NS, messages=1, took_sec=0.001)
+        assert not due.is_next(STEP_NS)
+        assert not due.is_next(2 * STEP_NS)

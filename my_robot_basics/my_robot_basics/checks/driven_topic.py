@@ -65,8 +65,20 @@ class DrivenTopic:
         self._patient_sec = PATIENT_SEC
         self._due = None
 
-    def tick(self, step_ns: int) -> None:
-        """Move the clock, and receive what the node publishes then. Raises Inconclusive."""
+    def expect_in_each_tick(self, step_ns: int) -> bool:
+        """From now on, a message is due in each tick with this step, until one has another step.
+
+        Returns False, and changes nothing, if each tick is acknowledged.
+        """
+        if self._due is not None:
+            self._due.expect_each(step_ns)
+        return self._due is not None
+
+    def tick(self, step_ns: int) -> int:
+        """Move the clock, and receive what the node publishes then. Raises Inconclusive.
+
+        Returns how many messages came.
+        """
         received = self.recorder.received
         before, start = len(received), time.monotonic()
         is_due = self._due is not None and self._due.is_next(step_ns)
@@ -85,6 +97,7 @@ class DrivenTopic:
         self._ticks.append(_Tick(took_sec, messages, is_due))
         if self._due is not None:
             self._due.note(step_ns, messages=messages, took_sec=took_sec)
+        return messages
 
     def expect_keeps_up(self, ticks: int, step_ns: int) -> None:
         """Raise Inconclusive if callbacks took longer than a period in the last ticks.

@@ -1,12 +1,15 @@
 """Drive the robot's clock while a topic is recorded, and prove the period with other steps."""
 
+import itertools
+
 from my_robot_basics.checks import rates
 from my_robot_basics.checks.driven_topic import DrivenTopic
 from my_robot_basics.checks.inconclusive import NoMessage
 from my_robot_basics.checks.recording import Recording, Sample
 
 SECONDS_ENOUGH = 10.0
-"""If driving the clock takes long, a recording of so many seconds is enough."""
+"""If driving the clock takes long, a recording of so many seconds is enough. If it is longer, so
+many seconds are recorded in short steps first."""
 FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
 """Steps of the clock to try, as parts of the given step, until some ticks bring no message.
 
@@ -31,20 +34,66 @@ KEEPS_UP_EVERY = 20
 def drive(topic: DrivenTopic, *, seconds: float, step_sec: float) -> Recording:
     """Record `seconds`, or longer until there are FEWEST messages. Raises Inconclusive.
 
-    If driving the clock takes long, record less, so that there is time for the proof.
+    If the messages of the first SECONDS_ENOUGH are equally far apart, later ticks are as long as
+    that; if one of them does not bring one message, the recording starts again. If driving the
+    clock takes long, record less, so that there is time for the proof.
     """
     step_ns, start_ns = _find_step(topic, step_sec=step_sec)
-    received, clock = topic.recorder.received, topic.clock
-    before = len(received)
-    for done in range(1, round(seconds * 1e9 / step_ns) + 1):
-        topic.tick(step_ns)
-        if done % KEEPS_UP_EVERY == 0:
-            topic.expect_keeps_up(KEEPS_UP_EVERY, step_ns)
-            if done * step_ns >= SECONDS_ENOUGH * 1e9 and clock.takes_long():
-                break
-    while len(received) < before + rates.FEWEST:
+    first_sec = min(seconds, SECONDS_ENOUGH)
+    _tick(topic, start_ns, seconds=first_sec, step_ns=step_ns)
+    if first_sec < seconds and not topic.clock.takes_long():
+        long_ns = _distance_ns(topic, start_ns)
+        if long_ns <= step_ns or not topic.expect_in_each_tick(long_ns):
+            _tick(topic, start_ns, seconds=seconds, step_ns=step_ns)
+        elif not _tick(topic, start_ns, seconds=seconds, step_ns=long_ns, by_message=True):
+            start_ns = _start_again(topic, start_ns, seconds=seconds, step_ns=step_ns)
+    while len(_times_ns(topic, start_ns)) < rates.FEWEST:
         topic.tick_to_message(step_ns)
     return _recorded(topic, start_ns=start_ns, step_ns=step_ns)
+
+
+def _tick(
+    topic: DrivenTopic, start_ns: int, *, seconds: float, step_ns: int, by_message: bool = False
+) -> bool:
+    """Tick until `seconds` have passed since `start_ns`, or enough if that takes long.
+
+    Returns whether it did: with `by_message`, a tick ends it that does not bring one message.
+    """
+    clock = topic.clock
+    ticks = round((start_ns + seconds * 1e9 - clock.now_ns) / step_ns)
+    for done in range(1, ticks + 1):
+        if topic.tick(step_ns) != 1 and by_message:
+            return False
+        if done % KEEPS_UP_EVERY == 0:
+            topic.expect_keeps_up(KEEPS_UP_EVERY, step_ns)
+            if clock.now_ns - start_ns >= SECONDS_ENOUGH * 1e9 and clock.takes_long():
+                break
+    return True
+
+
+def _start_again(topic: DrivenTopic, start_ns: int, *, seconds: float, step_ns: int) -> int:
+    """Record again in short steps from the next message on; return when that came.
+
+    If none comes within the `seconds` since `start_ns`, the messages have ended: return that.
+    """
+    while topic.clock.now_ns < start_ns + seconds * 1e9:
+        if topic.tick(step_ns):
+            start_ns = topic.clock.now_ns
+            _tick(topic, start_ns, seconds=seconds, step_ns=step_ns)
+            break
+    return start_ns
+
+
+def _times_ns(topic: DrivenTopic, start_ns: int) -> list[int]:
+    """The ticks of the messages since then, on the robot's clock."""
+    times_ns = (topic.clock.time_ns(sent_ns) for _, sent_ns in topic.recorder.received)
+    return [time_ns for time_ns in times_ns if time_ns > start_ns]
+
+
+def _distance_ns(topic: DrivenTopic, start_ns: int) -> int:
+    """How far apart the messages since `start_ns` are, if all distances are equal; otherwise 0."""
+    distances = {b - a for a, b in itertools.pairwise([start_ns, *_times_ns(topic, start_ns)])}
+    return distances.pop() if len(distances) == 1 else 0
 
 
 def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:

@@ -20,11 +20,19 @@ class DueTicks:
         self._gaps: deque[int] = deque(maxlen=ALIKE)
         self._since = 0
         """How many ticks there were since the last message."""
+        self._in_each = False
+        """Whether a message may be due in each tick, so that no tick shows other calls."""
+
+    def expect_each(self, step_ns: int) -> None:
+        """From now on, a message is due in each tick with that step."""
+        self._step_ns, self._in_each, self._since = step_ns, True, 0
+        self._gaps.extend([1] * ALIKE)
 
     def is_next(self, step_ns: int) -> bool:
         """Whether a message is due in the next tick, if it has that step."""
         is_known = step_ns == self._step_ns and len(self._gaps) == ALIKE
-        return is_known and {*self._gaps} == {self._since + 1} != {1}
+        is_close = not self._in_each and self._since == 0
+        return is_known and not is_close and {*self._gaps} == {self._since + 1}
 
     def may_be_next(self, step_ns: int) -> bool:
         """Whether a message may come in the next tick, or fewer than ALIKE have come so far."""
@@ -35,7 +43,7 @@ class DueTicks:
     def note(self, step_ns: int, *, messages: int, took_sec: float) -> None:
         """Learn from a tick: how many messages came in it, and how long it took in wall time."""
         if step_ns != self._step_ns:
-            self._step_ns = step_ns
+            self._step_ns, self._in_each = step_ns, False
             self._gaps.clear()
         self._since += 1
         if not messages:
