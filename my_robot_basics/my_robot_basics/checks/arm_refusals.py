@@ -4,10 +4,11 @@ import math
 
 from arm_interfaces.action import MoveArm
 from my_robot_basics.checks.accepted_goals import expect_accepted
-from my_robot_basics.checks.action_ends import ActionEnds
+from my_robot_basics.checks.action_ends import ActionEnds, SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_progress import bring_in_haste, is_under_way
+from my_robot_basics.checks.arm_results import is_near
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import expect, fail
@@ -80,7 +81,7 @@ def expect_one_at_a_time(
         moving = arm.send(arm.goal(first, speed=TOO_MANY_SPEED))
         wanted_sec = far_rad(arm.start, first) / moving.goal.speed
         arm.time.let_pass(moving.is_over, seconds=BEFORE_PART * wanted_sec)
-        for position in second, first:
+        for position in first, second:  # the arm ends there if a rejected goal leads it astray
             too_many = server.send(goal(position, speed=TOO_MANY_SPEED), ends=other)
             # a server that blocks its other callbacks during a move answers only after it
             if moving.is_over():
@@ -102,6 +103,7 @@ def expect_one_at_a_time(
             'execute callback when the arm is there',
             cause='a goal does not end',
         )
+        _expect_not_led_to(second, arm, moving, first)
         is_early = arm.seconds(moving) < EARLY_PART * wanted_sec
         expect(
             not is_early,
@@ -117,6 +119,23 @@ def expect_one_at_a_time(
         arm.settle()  # else a server without cancellation would still move at the next check
 
     look(action, refuses, start=start)
+
+
+def _expect_not_led_to(rejected: Pose, arm: WatchedArm, moving: SentGoal, position: Pose) -> None:
+    """The goal to `position` does not end at the pose of a rejected goal. Raises CheckFailed."""
+    if moving.is_over():
+        arm.has_result(moving)
+    ends = [list(message.position) for _, message in moving.feedback()][-1:]
+    if moving.result is not None:
+        ends.append(list(moving.result.position))
+    if any(is_near(end, rejected) and not is_near(end, position) for end in ends):
+        fail(
+            expected='the arm to go on to the first goal when a second one is rejected',
+            seen='it go to the second goal',
+            hint='remember nothing of a goal that you reject: take the goal that moves the arm '
+            'from goal_handle.request, in the execute callback',
+            cause='a rejected goal moves the arm',
+        )
 
 
 def _what_is_wrong(wrong: MoveArm.Goal) -> str:
