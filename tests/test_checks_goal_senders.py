@@ -11,7 +11,12 @@ def received(*names):
 
 
 def asked(*messages):
-    return AskedGoals('/goal_pose', [*messages], lambda message, request: message == request)
+    return AskedGoals(
+        '/goal_pose',
+        '/obstacle',
+        messages=[*messages],
+        is_for=lambda message, request: message == request,
+    )
 
 
 def test_a_goal_that_no_message_asked_for_fails_with_what_to_do():

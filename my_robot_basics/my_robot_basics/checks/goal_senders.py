@@ -45,6 +45,9 @@ class AskedGoals:
     """Which goals the messages on a topic ask for."""
 
     asked_on: str
+    cancelled_on: str
+    is_obstacle: bool = False
+    """Whether the last message on `cancelled_on` said that there is an obstacle."""
     messages: list[Any] = field(default_factory=list)
     """The messages that were published, in order."""
     is_for: Callable[[Any, Any], bool] = lambda message, request: True
@@ -75,15 +78,16 @@ def why_no_goal(
     *,
     node_names: Collection[str],
     raised: CallbackErrors,
-    asked_on: str,
+    asked: AskedGoals,
     was_away: bool,
 ) -> str:
-    """Advice if no goal comes for a message on the topic `asked_on`.
+    """Advice if no goal comes for a message.
 
     `was_away`: whether there was no server when an earlier message came.
     """
     if hint := raised.hint_or_thread():
         return hint
+    asked_on, cancelled_on = asked.asked_on, asked.cancelled_on
     ends = actions.take_graph(watcher.node)
     clients = ends.clients.get(name, {})
     if not clients:
@@ -96,6 +100,12 @@ def why_no_goal(
         f'call send_goal_async(goal) for each message on {asked_on}, when it arrives, also while '
         'another goal moves the arm'
     )
+    if asked.is_obstacle:
+        hint = (
+            f'call send_goal_async(goal) for each message on {asked_on}, also after True on '
+            f'{cancelled_on}: an obstacle cancels the goal that moves the arm then, and no later '
+            'one'
+        )
     if was_away:
         hint = (
             'a goal that is sent while there is no server never gets an answer, so let no later '

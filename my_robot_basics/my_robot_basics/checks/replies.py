@@ -15,6 +15,7 @@ from my_robot_basics.checks.outcome_words import why_another_word
 from my_robot_basics.checks.scripted_action import Ending, ReceivedGoal
 from my_robot_basics.checks.served_action import ServedAction
 from my_robot_basics.checks.unasked_cancels import (
+    expect_no_goal_for_false,
     expect_none_for_another,
     expect_none_for_earlier,
     expect_none_for_false,
@@ -94,9 +95,9 @@ def expect_waiting(server: ServedAction, early: Pose, later: Pose) -> None:
 
 
 def expect_cancel(server: ServedAction, position: Pose) -> None:
-    """An obstacle makes the client cancel its goal and publish 'canceled'. Raises CheckFailed."""
-    goal = ask(server, position)
-    _expect_cancel_of(server, goal)
+    """An obstacle cancels the goal for good; the client publishes so. Raises CheckFailed."""
+    _expect_cancel_of(server, ask(server, position))
+    expect_no_goal_for_false(server)
 
 
 def expect_no_cancel(server: ServedAction, position: Pose) -> None:

@@ -44,7 +44,7 @@ class ServedAction(ScriptedActionServer):
         self._raised = CallbackErrors(set(outcomes.publishers()))
         self.publishers: dict[str, Publisher] = {}
         self._known_starts = self._before = 0
-        self.asked = goal_senders.AskedGoals(asked_on)
+        self.asked = goal_senders.AskedGoals(asked_on, cancelled_on)
         self._for_last: Callable[[], list[ReceivedGoal]] = list  # the goals for the last message
         self._was_away = False  # whether a message without a goal so far found no server
         self._mute: set[str] = set()  # nodes without an answer about parameters: not asked again
@@ -92,7 +92,7 @@ class ServedAction(ScriptedActionServer):
 
     def say_obstacle(self, is_there: bool) -> None:
         """Publish on `cancelled_on` whether there is an obstacle."""
-        self._before = len(self._outcomes.received)
+        self._before, self.asked.is_obstacle = len(self._outcomes.received), is_there
         self._publish(self.cancelled_on, Bool(data=is_there))
 
     def expect_cancel_of(self, goal: ReceivedGoal) -> None:
@@ -190,7 +190,7 @@ class ServedAction(ScriptedActionServer):
         return names - self._mute
 
     def _why_no_goal(self) -> str:
-        how = {'asked_on': self.asked_on, 'was_away': self._was_away, **self._client_state()}
+        how = {'asked': self.asked, 'was_away': self._was_away, **self._client_state()}
         return goal_senders.why_no_goal(self.watcher, self.name, self.type, **how)
 
     def _why_silent(self, hint: str) -> str:

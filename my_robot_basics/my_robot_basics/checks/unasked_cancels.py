@@ -1,7 +1,7 @@
-"""Requests to cancel a goal without an obstacle, and why a client sends them."""
+"""Requests to cancel without an obstacle, goals for the end of one, and why clients send them."""
 
 from my_robot_basics.checks.scripted_action import ReceivedGoal
-from my_robot_basics.checks.served_action import ServedAction
+from my_robot_basics.checks.served_action import QUIET_SEC, ServedAction
 from my_robot_basics.feedback.errors import expect
 
 CAUSE = 'a goal is cancelled without an obstacle'
@@ -39,4 +39,18 @@ def expect_none_for_false(server: ServedAction, goal: ReceivedGoal) -> None:
         seen='one',
         hint='look at message.data: only True asks to cancel',
         cause=CAUSE,
+    )
+
+
+def expect_no_goal_for_false(server: ServedAction) -> None:
+    """The client sends no goal for False on `cancelled_on`. Raises CheckFailed."""
+    before = len(server.goals)
+    server.say_obstacle(is_there=False)
+    expect(
+        not server.watcher.spin_until(lambda: len(server.goals) > before, timeout_sec=QUIET_SEC),
+        expected=f'no goal for False on {server.cancelled_on}',
+        seen='one',
+        hint=f'False changes nothing: only a message on {server.asked_on} becomes a goal, so do '
+        'not resume the goal that was cancelled',
+        cause='a goal is sent when an obstacle is gone',
     )
