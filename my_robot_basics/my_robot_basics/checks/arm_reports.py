@@ -25,6 +25,12 @@ FLOOD_HZ = 500.0
 NO_WAIT = (
     'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
 )
+NONE = 'call goal_handle.publish_feedback(…) in each step of the move'
+NONE_BLOCKED = (
+    'call goal_handle.publish_feedback(…) in each step of the move; if you do, no step waits, and '
+    'all feedback is lost: write `await sleep(self, …)`'
+)
+"""A loop without waits blocks the node's other callbacks, and so ignores the robot's clock."""
 FEWEST = 5
 PROGRESS_PART = 0.06
 """How far the arm may be ahead of a steady move or behind it, as a part of the way."""
@@ -76,7 +82,7 @@ class MoveReport:
             fail(
                 expected='feedback during the move',
                 seen='none',
-                hint=why or 'call goal_handle.publish_feedback(…) in each step of the move',
+                hint=why or (NONE if self.arm.time.is_driven else NONE_BLOCKED),
                 cause='there is no feedback',
             )
         seconds = self.arm.seconds(self.sent)
