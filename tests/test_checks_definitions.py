@@ -191,6 +191,15 @@ WRONG = {
     'keyword': (count('bool success', 'bool success\nstring from'), 'from is a word of Python'),
     'twice': (count('bool success', 'bool success\nbool success'), 'two of the name success'),
     'too large a value': (turns('MOTOR2=1', 'MOTOR2=256'), "rosidl says: value '256' can not be"),
+    'a space inside the brackets': (
+        count('[<=60]', '[<= 60]'),
+        'no space inside the brackets of a type: float64[<=2] name',
+    ),
+    'a type of C': (count('uint8 motor', 'uint8_t motor'), 'no type uint8_t: write uint8'),
+    'its own message in lower case': (
+        count('Turns total', 'turns total'),
+        'no type turns: the type of a message begins with a capital letter',
+    ),
     'float32': (turns('float64[2]', 'float32[2]'), 'another number of bits'),
     'unsigned': (turns('int32[2]', 'uint32[2]'), 'whole numbers that may be negative'),
     'signed constant': (turns('uint8 MOTOR1', 'int8 MOTOR1'), 'that are never negative'),

@@ -8,21 +8,11 @@ import unicodedata
 from typing import Any
 
 from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.ros2.other_types import FORMER, OTHER_NAMES
 
 MOST_CHARACTERS = 300
 """The longest accepted line, without its comment."""
 
-_OTHER_NAMES = {
-    'int': 'int32 or another int with its number of bits',
-    **dict.fromkeys(('integer', 'long', 'short', 'unsigned'), 'int32, or uint8 for a small one'),
-    'uint': 'uint8 or another uint with its number of bits',
-    **dict.fromkeys(('float', 'double', 'real'), 'float64, or float32 for half the digits'),
-    **dict.fromkeys(('str', 'String', 'text', 'char*'), 'string'),
-    **dict.fromkeys(('boolean', 'Bool', 'Boolean'), 'bool'),
-}
-"""Types of other languages, and ROS's types in their place."""
-_FORMER = {'time': 'Time', 'duration': 'Duration'}
-"""Types of ROS 1 that the parser still accepts, but that cannot be built."""
 _ASCII = {chr(code) for code in range(33, 127)}
 _CONSTANT_NAME = re.compile('[A-Z](?:_?[A-Z0-9])*')
 """The names that rosidl accepts; its own pattern takes hours for some long names."""
@@ -87,8 +77,8 @@ def _parsed(package: str, line: str) -> Any:
         raise BadLine(fault)  # rosidl takes an unknown type, such as String, for a message
     if keyword.iskeyword(member.name):
         raise BadLine(f'{member.name} is a word of Python, so that no Python node can use it')
-    if member.type.is_primitive_type() and member.type.type in _FORMER:
-        standard = f'builtin_interfaces/{_FORMER[member.type.type]}'
+    if member.type.is_primitive_type() and member.type.type in FORMER:
+        standard = f'builtin_interfaces/{FORMER[member.type.type]}'
         raise BadLine(f'{member.type.type} is a type of ROS 1: write {standard}')
     return member
 
@@ -144,12 +134,14 @@ def _about_form(type_name: str, rest: str) -> str:
         return 'no line ends with a semicolon'
     if rest.startswith('['):
         return 'no space between a type and its brackets: float64[2] name'
+    if '[' in type_name and ']' not in type_name and ']' in rest:
+        return 'no space inside the brackets of a type: float64[<=2] name'
     first, second = (words.partition('[')[0] for words in (type_name, rest))
     is_type = second in _primitives() or _MESSAGE_TYPE.fullmatch(second)
-    if is_type and first not in [*_primitives(), *_OTHER_NAMES] and _FIELD_NAME.fullmatch(first):
+    if is_type and first not in [*_primitives(), *OTHER_NAMES] and _FIELD_NAME.fullmatch(first):
         return 'the type comes first, then the name: float64 speed'
     # the brackets behind = are those of a value
-    if '[' in re.split('[ =]', rest)[0] and type_name not in _OTHER_NAMES:
+    if '[' in re.split('[ =]', rest)[0] and type_name not in OTHER_NAMES:
         return 'brackets belong to the type: float64[2] name'
     return ''
 
@@ -162,11 +154,11 @@ def _about_type(type_name: str) -> str:
         return 'a text of at most ten characters is written string<=10'
     if '<' in plain:
         return 'at most two values are written with brackets: float64[<=2]'
-    if plain in _OTHER_NAMES:
-        return f'there is no type {plain}: write {_OTHER_NAMES[plain]}'
+    if plain in OTHER_NAMES:
+        return f'there is no type {plain}: write {OTHER_NAMES[plain]}'
     if plain in _primitives():
         return ''
-    if plain.lower() in _primitives() and plain.lower() not in _FORMER:
+    if plain.lower() in _primitives() and plain.lower() not in FORMER:
         return f'types are written in lower case: {plain.lower()}'
     parts = [part for part in re.split(r'::|[./]', plain) if part]
     if parts[-1:] == ['msg'] and plain.endswith('.msg'):
@@ -178,7 +170,10 @@ def _about_type(type_name: str) -> str:
     if '/' in plain and not re.fullmatch('[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*', plain):
         return 'a message of another package is written like std_msgs/Header'
     if len(parts) == 1 and not re.fullmatch('[A-Z][A-Za-z0-9]*', plain):
-        return f'there is no type {shorten(plain, 40)}'
+        fault = f'there is no type {shorten(plain, 40)}'
+        if re.fullmatch('[a-z]{1,40}', plain):
+            return f'{fault}: the type of a message begins with a capital letter, like Header'
+        return fault
     return ''
 
 
