@@ -32,6 +32,7 @@ def test_a_node_left_on_the_graph_is_blamed_on_its_program_only_if_it_answers(
     ('code', 'words'),
     [
         (-signal.SIGSEGV, 'ended by SIGSEGV: rclpy crashes like this if an ActionClient or Act'),
+        (-signal.SIGABRT, "ended by SIGABRT: run it with run_executable('greeter', 'greet')"),
         (-signal.SIGKILL, "ended by SIGKILL: run it with run_executable('greeter', 'greet')"),
         (1, "exit code 1: run it with run_executable('greeter', 'greet')"),
         (0, 'exit code 0: main has returned: let it spin the node until Ctrl-C'),
@@ -51,6 +52,7 @@ def test_a_program_that_ended_gets_advice_for_its_exit_code(monkeypatch, code, w
         ('expect_end', -signal.SIGSEGV, 'rclpy crashes like this if an ActionClient'),
         ('expect_end', 1, 'let main return without an exception'),
         ('expect_clean_end', -signal.SIGSEGV, 'rclpy can crash like this if main returns'),
+        ('expect_clean_end', -signal.SIGABRT, 'rclpy can crash like this if main returns'),
         ('expect_clean_end', 2, 'in main, catch KeyboardInterrupt'),
     ],
 )

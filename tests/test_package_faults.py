@@ -34,8 +34,9 @@ def test_a_crash_in_a_notebook_is_reported_with_the_same_cause_as_in_feedback():
     assert said == f'had ended by itself (by signal {signal.SIGRTMIN + 1})'
 
 
-def test_a_crash_after_ctrl_c_is_attributed_to_a_thread_that_still_spins():
-    process = types.SimpleNamespace(code=-signal.SIGSEGV, lines=[])
+@pytest.mark.parametrize('by', [signal.SIGSEGV, signal.SIGABRT])
+def test_a_crash_after_ctrl_c_is_attributed_to_a_thread_that_still_spins(by):
+    process = types.SimpleNamespace(code=-by, lines=[])
     said = executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
     assert 'if main returns while a thread still spins' in said
     assert 'a type that is not an action' not in said

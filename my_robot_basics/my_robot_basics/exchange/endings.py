@@ -30,17 +30,19 @@ def error_in(lines: Sequence[str]) -> str:
 
 
 def why_crashed(code: int | None, *, at_end: bool = False) -> str:
-    """Return the probable mistake in a program that was ended by SIGSEGV; '' for other codes.
+    """Return the probable mistake in a program that crashed inside rclpy; '' for other codes.
 
     `at_end`: it ran until it was told to end.
     """
+    if at_end and code in (-signal.SIGSEGV, -signal.SIGABRT):
+        # Python 3.11 takes a thread for ended if Ctrl-C interrupts its join(): a later one returns
+        return (
+            'rclpy can crash like this if main returns while a thread still spins, so spin in '
+            'main, and let the thread do the rest; or wait for each thread with join(), but only '
+            'after rclpy.try_shutdown()'
+        )
     if code != -signal.SIGSEGV:
         return ''
-    if at_end:
-        return (
-            'rclpy can crash like this if main returns while a thread still spins, so wait for '
-            'each thread with join() after rclpy.try_shutdown()'
-        )
     return (
         'rclpy crashes like this if an ActionClient or ActionServer gets a type that is not an '
         'action, so look at each, and give it one such as MoveArm, and no part of it'
