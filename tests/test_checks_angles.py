@@ -26,6 +26,7 @@ def test_angles_are_compared_up_to_whole_turns(number, is_near):
         ([angle + 0.05 for angle in WANTED], 'close, and not right'),
         ([math.radians(angle) for angle in WANTED], 'these are radians'),
         ([round(math.radians(angle), 2) for angle in WANTED], 'these are radians'),
+        ([round(math.degrees(angle), 2) for angle in WANTED], 'degrees converted once more'),
         (WANTED[:2], 'both angles of both branches: one branch is not there'),
         ([WANTED[0], WANTED[2]], 'θ2 is missing or wrong in both'),
         (WANTED[:3], '1 of 4 angles missing or wrong'),
@@ -48,3 +49,9 @@ def test_advice_for_missing_angles_fits_the_logged_numbers(numbers, advice):
     found = angles.what_to_try(WANTED, numbers)
     assert advice in found
     assert not any(f'{abs(angle):g}' in found for angle in WANTED)
+
+
+def test_four_digits_in_all_are_too_few_decimals_for_large_angles_only():
+    wanted = -72.65, -111.25, -165.46, 111.25
+    found = angles.what_to_try(wanted, [float(f'{angle:.4g}') for angle in wanted])
+    assert found == angles.DECIMALS

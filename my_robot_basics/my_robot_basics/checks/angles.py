@@ -43,13 +43,17 @@ def what_to_try(wanted: Sequence[float], numbers: Sequence[float]) -> str:
         return f'log every solution for each target, with self.get_logger().info(…) {HOW}'
     if not missing(wanted, numbers, ROUNDED_DEG):
         close = [n for n in numbers if any(is_near(a, n, ROUNDED_DEG) for a in wanted)]
-        if all(number == round(number, 1) for number in close):
+        off = [n for n in close if not any(is_near(a, n) for a in wanted)]
+        # of a few digits in all, as {:.4g} has them, small angles are right
+        if all(number == round(number, 1) for number in off):
             return DECIMALS
         return 'the angles are close, and not right: add nothing to them, and round nothing before'
     if not missing([math.trunc(angle) for angle in wanted], numbers):
         return DECIMALS
     if not missing(wanted, [math.degrees(number) for number in numbers], ROUNDED_DEG):
         return 'these are radians, so log them with math.degrees(…)'
+    if not missing(wanted, [math.radians(number) for number in numbers]):
+        return 'these are degrees converted once more: log the angles without math.degrees(…)'
     absent = missing(wanted, numbers)
     if not missing([90.0 - angle for angle in absent], numbers):
         # the pose is mirrored in the line x = y, and so the two branches are swapped, too
