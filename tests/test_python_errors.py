@@ -23,6 +23,7 @@ from rclpy.action import ActionClient, ActionServer
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 
 from arm_interfaces.action import MoveArm
@@ -68,7 +69,8 @@ NAMES = {
         'rclpy': rclpy,
     },
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
-    **{'AskerNode': AskerNode, 'Node': Node},
+    **{'AskerNode': AskerNode, 'Node': Node, 'Publisher': Publisher},
+    'print_it': lambda message: print(message),
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
 }
 """What the lines of code may use."""
@@ -121,6 +123,18 @@ def error_of(code, **names):
         ('rclpy.Future().result.reachable', ', so call it, with parentheses behind its name'),
         ('[].name', ', so go through the list: for each in the_list'),
         ('Asker().judge()', ', so give a callback by its name, without parentheses'),
+        ('Node.create_timer(None, 0.2)', ', so give a callback by its name, without parentheses'),
+        ('Node.create_publisher(None, JointState, "/a")', ', so give all arguments: the type, '),
+        ('Node.create_subscription(None, JointState, "/a")', ', so give all arguments: the ty'),
+        ('Node.create_subscription(None, JointState, "/a", max)', ', so give all arguments: the'),
+        (
+            'Node.create_publisher(None, JointState, "/a", queue_size=10)',
+            ', so give the depth of the queue as a whole number alone, such as 10, after',
+        ),
+        ('Node._validate_qos_or_depth_parameter(None, print_it)', ', so give the depth of the q'),
+        ('Node._validate_qos_or_depth_parameter(None, "10")', ', so give the depth of the queue'),
+        ('Node.create_client(None, SolveIK)', ''),
+        ('Publisher.publish(None)', ''),
         (
             'rclpy.logging.get_logger("a").info("%.2f", 1.0)',
             ', so log a text: put the value into ',

@@ -137,7 +137,7 @@ BY_WORDS = (
         to_do=', so go through the list: for each in the_list',
     ),
     Case(
-        pattern=r'(?<=\w)(?<!\bRandom)\.\w+\(\) missing \d+ required positional argument',
+        pattern=r'(?<=\w)(?<!\bRandom)(?<!\bNode)(?<!\bPublisher)\.\w+\(\) missing \d+ required',
         to_do=', so give a callback by its name, without parentheses',
     ),
     Case(
