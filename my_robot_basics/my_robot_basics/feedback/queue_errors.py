@@ -6,7 +6,7 @@ OF_QUEUES = (
     Case(
         pattern=r"missing \d required positional arguments?: .*'qos_profile'",
         to_do=', so give all arguments: the type, the name, for a subscription the callback, '
-        'and the depth of the queue, such as 10',
+        'and the depth of the queue, such as 10, or a QoS profile',
     ),
     Case(
         # as in ROS 1, or before the callback
