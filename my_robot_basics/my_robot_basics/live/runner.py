@@ -11,17 +11,14 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
 from my_robot_basics.live import (
-    action_types,
     answer_end,
-    child_loggers,
     commands,
     executables,
-    harmless_errors,
     interrupting,
     node_file,
     notebook,
+    rclpy_patches,
     spinning,
-    thread_pools,
 )
 from my_robot_basics.live.background import Background
 from my_robot_basics.live.destroying import destroy
@@ -183,10 +180,7 @@ def set_up() -> int:
             interrupting.let_cells_be_interrupted()
             if not classroom.in_grading_room():
                 spinning.help_in_cells()
-        harmless_errors.hide()
-        thread_pools.let_threads_begin()
-        action_types.expect_action_types()
-        child_loggers.remember_child_loggers()
+        rclpy_patches.patch_rclpy()
         atexit.register(_leave_nothing, os.getpid())
     return domain_id
 
