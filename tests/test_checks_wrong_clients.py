@@ -52,6 +52,25 @@ class RaisesInAnswer(IKClient):
         self.send(response.elbow)
 
 
+class SkipsRepeatedPoses(IKClient):
+    last = None
+
+    def send(self, position):
+        if position != self.last:
+            super().send(position)
+        self.last = position
+
+
+class RaisesInSecondAnswer(IKClient):
+    def __init__(self):
+        super().__init__()
+        self.names = ['first']
+
+    def answer(self, response):
+        self.get_logger().info(self.names.pop())
+        super().answer(response)
+
+
 WRONG = [
     (ForwardsNothing, 'saw none in 1.5 s: publish when the answer is there'),
     (ElbowDown, 'this is elbow_down: publish the angles of response.elbow_up'),
@@ -60,6 +79,8 @@ WRONG = [
     (AsksForAnother, 'a request to /solve_ik for the message on /target_point, saw arm_interf'),
     (AsksNobody, 'saw none in 1.5 s: call self.client.call_async'),
     (RaisesInAnswer, "saw none in 1.5 s: its callback raised AttributeError.*'elbow'"),
+    (SkipsRepeatedPoses, 'publish each answer once, also if it equals an earlier one'),
+    (RaisesInSecondAnswer, 'saw none in 1.5 s: its callback raised IndexError'),
 ]
 
 

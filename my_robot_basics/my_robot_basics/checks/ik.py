@@ -3,6 +3,7 @@
 import itertools
 import math
 import time
+from functools import partial
 from typing import Any
 
 from geometry_msgs.msg import Point
@@ -117,7 +118,7 @@ def expect_answer(server: Server, x: float, y: float) -> None:
     It gets the target twice; the second response has a message, too. Raises CheckFailed.
     """
     _expect_answer(server, x, y)
-    expect_heeds_reachable(server, lambda: _expect_answer(server, x, y))
+    expect_heeds_reachable(server, x, y, partial(_expect_answer, server))
 
 
 def _expect_answer(server: Server, x: float, y: float) -> None:
