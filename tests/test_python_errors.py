@@ -20,6 +20,8 @@ from my_robot_basics.validate.trouble import describe_cell_error
 from nbformat.v4 import new_output
 from rcl_interfaces.msg import FloatingPointRange
 from rclpy.action import ActionClient, ActionServer
+from rclpy.client import Client
+from rclpy.duration import Duration
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -70,6 +72,7 @@ NAMES = {
     },
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
     **{'AskerNode': AskerNode, 'Node': Node, 'Publisher': Publisher},
+    **{'Client': Client, 'Duration': Duration},
     'print_it': lambda message: print(message),
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
 }
@@ -135,6 +138,9 @@ def error_of(code, **names):
         ('Node._validate_qos_or_depth_parameter(None, "10")', ', so give the depth of the queue'),
         ('Node.create_client(None, SolveIK)', ''),
         ('Publisher.publish(None)', ''),
+        ('Publisher.__new__(Publisher)()', ', so send the message with the method publish of'),
+        ('Client.__new__(Client)()', ', so send the request with the method call_async of'),
+        ('float(Duration(seconds=0.2))', ', so give the number of seconds itself, such as 0.2'),
         (
             'rclpy.logging.get_logger("a").info("%.2f", 1.0)',
             ', so log a text: put the value into ',
