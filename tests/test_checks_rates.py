@@ -71,6 +71,18 @@ def test_pauses_are_named_below_nine_tenths_of_the_rate_too():
         made.assert_rate(hz=5.0)
 
 
+@pytest.mark.parametrize(
+    ('period_sec', 'why'),
+    [(0.2, 'and several messages at once: publish one message'), (0.18, 'period = 1 / rate')],
+)
+def test_messages_at_once_are_named_only_if_the_others_have_the_rate(period_sec, why):
+    times = every(period_sec, 20)
+    twice = sorted([*times, times[5] + 0.001, times[15] + 0.001])
+    made = recording(twice, clock='wall', seconds=20.0 * period_sec)
+    with pytest.raises(CheckFailed, match=f'saw .* Hz over .*{why}'):
+        made.assert_rate(hz=5.0)
+
+
 @pytest.mark.parametrize('period_sec', [0.2, 0.4])
 def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
     made = recording(every(period_sec))
