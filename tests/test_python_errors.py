@@ -157,6 +157,11 @@ def error_of(code, **names):
             ', so write add_on_set_parameters_callback, its name since',
         ),
         ('asyncio.get_running_loop()', ', so wait without asyncio, whose event loop does not run'),
+        ('JointState().position += [1.0]', ', so append one value at a time, or assign the whole'),
+        ('JointState().position + [1.0]', ', so append one value at a time, or assign the whole'),
+        ('[1.0] + JointState().position', ', so append one value at a time, or assign the whole'),
+        ("Parameter('targets', value=[1, 2.0])", ', so write numbers of one type in a'),
+        ("Parameter('targets', value=[[1.0, 2.0]])", ', so write numbers of one type'),
         ('SolveIK.Request().x', ', so look its fields up with ros2 interface show'),
         ('Asker().describe()', ', so put the range into a list, and that into a descriptor: Para'),
         ('FloatingPointRange()[0]', ', so put the range into a list, and that into a descriptor:'),
@@ -295,6 +300,16 @@ def test_errors_of_rclpy_about_a_decimal_comma_are_explained(run):
         assert hint_for_exception(f'{type(error).__name__}: {error}') == DECIMAL_COMMA
     error = error_of('node.create_timer(0.2, node.tick, 10)', node=node)
     assert hint_for_exception(f'{type(error).__name__}: {error}').endswith(', and no queue depth')
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize('default', [[], [0, 0], '', 0.0])
+def test_a_parameter_whose_default_is_no_list_of_doubles_is_explained(run, default):
+    given = Parameter('targets', value=[1.2, 0.8])
+    node = run(Node, 'player', parameter_overrides=[given])
+    error = error_of("node.declare_parameter('targets', default)", node=node, default=default)
+    said = hint_for_exception(f'{type(error).__name__}: {error}')
+    assert said.startswith(', so declare it with doubles, such as [0.0, 0.0]')
 
 
 ANOTHER_NAME = (
