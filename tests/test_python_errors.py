@@ -218,6 +218,17 @@ def test_the_missing_result_of_a_future_is_recognised_by_the_students_line():
     assert hint_for_exception(f'{said}if answer.reachable:)') == ''
 
 
+def test_a_future_that_was_cancelled_in_place_of_its_goal_is_explained():
+    said = "AttributeError: 'NoneType' object has no attribute 'status' (line 28, in end: print("
+    assert 'cancel_goal_async(), not its future' in hint_for_exception(f'{said}f.result().status)')
+
+
+def test_the_status_of_a_rejected_goal_is_explained():
+    said = 'KeyError: 0 (line 27, in end: '
+    assert 'goal_handle.accepted' in hint_for_exception(f'{said}print(ENDS[f.result().status]))')
+    assert hint_for_exception(f'{said}print(ENDS[n]))') == ''
+
+
 def test_a_loop_over_the_keys_of_a_dict_is_recognised_by_the_students_line():
     said = 'ValueError: too many values to unpack (expected 2) (line 12, in solve: for a, b in '
     assert hint_for_exception(f'{said}solutions:)') == ', so go through .items() of a dict'

@@ -122,3 +122,13 @@ def why_silent(
         return why
     is_free = all(answers_parameters(watcher, name) for name in set(node_names))
     return hint if is_free else WAITS
+
+
+def how_to_cancel(goal: ReceivedGoal, goals: Collection[ReceivedGoal]) -> str:
+    """Advice if a goal is not cancelled; `goals` are all that came."""
+    if any(not each.is_accepted and each.received_ns > goal.received_ns for each in goals):
+        return (
+            'a rejected goal came in between, so keep the goal handle that was accepted, and call '
+            'its cancel_goal_async()'
+        )
+    return 'call cancel_goal_async() of the goal handle that was accepted'

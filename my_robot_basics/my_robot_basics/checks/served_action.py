@@ -108,7 +108,7 @@ class ServedAction(ScriptedActionServer):
         fail(
             expected=f'a request to cancel the goal for True on {self.cancelled_on}',
             seen=f'none in {REPLY_SEC:g} s',
-            hint=self._why_silent('call cancel_goal_async() of the goal handle that was accepted'),
+            hint=self._why_silent(goal_senders.how_to_cancel(goal, self.goals)),
             cause='the goal is not cancelled',
         )
 

@@ -18,4 +18,15 @@ OF_ACTIONS = (
         to_do=', so call only one of succeed(), canceled() and abort() for each goal, and call it '
         'once',
     ),
+    Case(
+        pattern=r'KeyError: 0 \(.*\.status\b',
+        to_do=', so look at goal_handle.accepted first: a rejected goal has no result, and its '
+        'status is 0',
+    ),
+    Case(
+        # the future of a result, too early, or after its cancel()
+        pattern=r"'NoneType' object has no attribute 'status'.*\.result\(\)",
+        to_do=', so let add_done_callback call this function, and cancel the goal with '
+        'cancel_goal_async(), not its future: a future that was cancelled has no result',
+    ),
 )

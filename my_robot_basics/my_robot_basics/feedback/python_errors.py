@@ -12,7 +12,7 @@ from my_robot_basics.feedback.value_errors import OF_VALUES
 
 _BY_WORDS = tuple(
     (re.compile(words), clause)
-    for words, clause in (*BY_WORDS, *MOVED, *OF_ACTIONS, *OF_QUEUES, *OF_ROS1, *OF_VALUES)
+    for words, clause in (*OF_ACTIONS, *BY_WORDS, *MOVED, *OF_QUEUES, *OF_ROS1, *OF_VALUES)
 )
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
