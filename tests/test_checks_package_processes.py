@@ -65,3 +65,21 @@ def test_a_bad_exit_code_fails_with_its_likely_cause(monkeypatch, end, code, hin
     monkeypatch.setattr(spinning, 'wait_until_they_spin', lambda *_: None)
     with pytest.raises(CheckFailed, match=f': {hint}'):
         getattr(program, end)()
+
+
+@pytest.mark.parametrize(
+    ('told', 'hint'),
+    [
+        ({'own': True}, 'leave SIGINT to rclpy.init'),
+        ({'own': False}, 'let no callback and no loop go on for long'),
+        ({}, 'let no callback and no loop go on for long'),
+    ],
+    ids=['own handler', 'none', 'no answer'],
+)
+def test_a_program_that_goes_on_gets_advice_about_its_own_handler(monkeypatch, told, hint):
+    program = RunningExecutable('greeter', 'greet', ())
+    monkeypatch.setattr(program, '_ask', lambda verb: told if verb == 'handlers' else {})
+    watcher = SimpleNamespace(spin_until_free=lambda has_ended, free_sec: False)
+    monkeypatch.setattr(program, '_watcher', watcher, raising=False)
+    with pytest.raises(CheckFailed, match=f'it still runs after 5 s: {hint}'):
+        program._wait_for_end('greet to end after SIGINT', package_processes.END_SEC)

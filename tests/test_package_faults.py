@@ -9,6 +9,7 @@ from my_robot_basics.exchange.endings import RACE, is_clean, why_crashed
 from my_robot_basics.live import executables
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_words
+from my_robot_basics.live.package_signals import handles_ctrl_c
 from my_robot_basics.session import package_files
 from package_maker import NODE, PACKAGE, make_package
 
@@ -132,3 +133,22 @@ def test_a_script_that_linux_cannot_start_is_named(tmp_path, line, words):
     (prefix / 'lib/greeter/greet').write_text(f'{line}\nmain()\n')
     said = fault_in_install(PACKAGE, prefix, files)
     assert (words in said) if words else (said == '')
+
+
+@pytest.mark.parametrize(
+    ('line', 'is_own'),
+    [
+        ('signal.signal(signal.SIGINT, stop)', True),
+        ('signal(SIGINT, stop)', True),
+        ('rclpy.init(signal_handler_options=SignalHandlerOptions.NO)', True),
+        ('uninstall_signal_handlers()', True),
+        ('signal.signal(signal.SIGTERM, stop)', False),
+        ('rclpy.init(signal_handler_options=SignalHandlerOptions.ALL)', False),
+        ('pass  # Ctrl-C sends SIGINT', False),
+    ],
+)
+def test_code_that_handles_ctrl_c_itself_is_found(tmp_path, line, is_own):
+    folder = make_package(tmp_path)
+    (folder / 'greeter/more.py').write_text(f'{line}\n')
+    assert handles_ctrl_c(folder) is is_own
+    assert not handles_ctrl_c(folder / 'nowhere')

@@ -277,6 +277,26 @@ WRONG = (
         {'package_runs': r'look at super\(\).__init__'},
     ),
     Change(
+        'handles_sigint_itself',
+        swap(
+            DRIVER,
+            ('import math\n', 'import math\nimport signal\n'),
+            (
+                '        rclpy.init()\n',
+                '        rclpy.init()\n'
+                '        signal.signal(signal.SIGINT, lambda *_: rclpy.shutdown())\n',
+            ),
+        ),
+        (1, 0, 4),
+        {'package_runs': r'leave SIGINT to rclpy.init\(\), without signal.signal'},
+    ),
+    Change(
+        'declares_no_numbers',
+        swap(PLAYER, ("'targets', [1.2, 0.8, 0.9, -0.9]", "'targets', []")),
+        (1, 0, 0),
+        dict.fromkeys(('package_runs', 'arm_player_plays'), 'so declare it with doubles'),
+    ),
+    Change(
         'goes_on_after_ctrl_c',
         swap(
             DRIVER,

@@ -27,7 +27,6 @@ GONE_SEC = 8.0
 """How long its node may stay on the graph, in s of free time: DDS's lease of 5 s and a margin."""
 ASK_EVERY_SEC, ASK_END_EVERY_SEC = 0.3, 0.05
 """How often to ask the notebook whether the process has ended: normally, and if it should end."""
-AT_ONCE = 'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
 CLEANLY = (
     'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
     'rclpy.try_shutdown() at the end'
@@ -115,7 +114,7 @@ class RunningExecutable:
         self.expect_running()
         spinning.wait_until_they_spin(self._watcher, self._nodes)
         self._ask('signal', self._number, 'SIGINT')
-        self._wait_for_end(f'{self.executable} to end after SIGINT', END_SEC, hint=AT_ONCE)
+        self._wait_for_end(f'{self.executable} to end after SIGINT', END_SEC)
         code, said = self._state()
         if not is_clean(code, said.splitlines(), is_second=self._is_second):
             self._expect_code(0, hint=why_crashed(code, at_end=True) or CLEANLY)
@@ -131,17 +130,17 @@ class RunningExecutable:
                 second.expect_node(name)
             second.expect_clean_end()
 
-    def _wait_for_end(self, expected: str, free_sec: float, *, hint: str) -> None:
+    def _wait_for_end(self, expected: str, free_sec: float, *, hint: str = '') -> None:
         watch = Stopwatch()
         self._ask_every_sec, self._next_question = ASK_END_EVERY_SEC, 0.0
-        expect(
-            self._watcher.spin_until_free(self._has_ended, free_sec=free_sec),
-            expected=expected,
-            seen=f'it still runs after {free_sec:g} s',
-            hint=hint,
-            cause=f'{self.executable} does not end',
-            doubt=doubt_after(watch, free_sec),
-        )
+        if not self._watcher.spin_until_free(self._has_ended, free_sec=free_sec):
+            fail(
+                expected=expected,
+                seen=f'it still runs after {free_sec:g} s',
+                doubt=doubt_after(watch, free_sec),
+                hint=hint or package_words.why_it_goes_on(self._ask('handlers')),
+                cause=f'{self.executable} does not end',
+            )
 
     def _expect_code(self, wanted: int, *, hint: str) -> None:
         code, said = self._state()

@@ -42,3 +42,13 @@ def why_ended(code: int | None, package: str, executable: str) -> str:
         return 'main has returned: let it spin the node until Ctrl-C'
     run_it = f"run it with run_executable('{package}', '{executable}') and read why"
     return why_crashed(code) or run_it
+
+
+def why_it_goes_on(told: Mapping[str, Any]) -> str:
+    """Advice about a program that goes on after Ctrl-C; `told` is the room's on its handlers."""
+    if told.get('own') is True:
+        return (
+            'leave SIGINT to rclpy.init(), without signal.signal and signal_handler_options: '
+            'while rclpy.spin waits, no handler of your own is called'
+        )
+    return 'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'

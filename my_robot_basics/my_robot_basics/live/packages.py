@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from my_robot_basics.live import executables, package_build
+from my_robot_basics.live import executables, package_build, package_signals
 from my_robot_basics.live.package_build import Build
 from my_robot_basics.live.workspace import ros_ws_path
 from my_robot_basics.ros2 import skeleton
@@ -91,6 +91,7 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
 
     'built': the result of the build. 'start', name, arguments: start an executable. 'state',
     number: its exit code, None while it runs, and last output. 'signal', number, name: send that.
+    'handlers': whether its code handles SIGINT itself.
     """
     if verb == 'built':
         return _build_reply(_builds.get(package))
@@ -102,6 +103,8 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
         except (NotRunnable, OSError) as error:
             return {'problem': str(error)[:MOST_SAID]}
         return {'number': number}
+    if verb == 'handlers':
+        return {'own': package_signals.handles_ctrl_c(packages_folder() / package)}
     number, *rest = args
     if (found := executables.find(number)) is None:
         return {'problem': 'nothing was started under that number'}
