@@ -6,6 +6,7 @@ import pytest
 from my_robot_basics.checks import (
     CheckFailed,
     node_parameters,
+    older_timers,
     parameters,
     rate_parameter,
     sampling,
@@ -193,6 +194,21 @@ def test_a_node_that_publishes_as_fast_as_it_can_passes_the_check_of_refusals(mo
     rates_hz = iter([3_000.0, 1_500.0, 2_000.0, 900.0])
     monkeypatch.setattr(RateParameter, '_measure', lambda *_: (next(rates_hz), CheckFailed))
     RateParameter(timers, 'rate_hz', TOPIC).expect_refuses(0.0, 60.0)
+
+
+@pytest.mark.parametrize(
+    ('seen_hz', 'why'),
+    [(92.5, 'store each new timer as self.timer'), (62.5, ''), (50.0, ''), (25.0, '')],
+)
+def test_a_rate_of_all_changes_together_is_explained_with_their_timers(seen_hz, why):
+    said = ''
+    try:
+        older_timers.expect_none('rate_hz', seen_hz, [12.5, 30.0, 50.0], doubt=CheckFailed)
+    except CheckFailed as failed:
+        said = str(failed)
+    assert why in said
+    assert bool(why) == bool(said)
+    older_timers.expect_none('rate_hz', 62.5, [12.5, 50.0], doubt=CheckFailed)  # has its own words
 
 
 @pytest.mark.slow

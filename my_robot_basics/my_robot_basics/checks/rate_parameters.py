@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NoReturn
 
-from my_robot_basics.checks import one_step
+from my_robot_basics.checks import older_timers, one_step
 from my_robot_basics.checks import parameter_refusals as refusals
+from my_robot_basics.checks.older_timers import are_near
 from my_robot_basics.checks.parameters import NodeParameters, node_parameters
 from my_robot_basics.checks.rate_failure import TOO_FAST_TIMES
 from my_robot_basics.checks.recording import Recording
@@ -17,8 +18,6 @@ from my_robot_basics.feedback.hidden import student_text
 RECORD_SEC = 4.0
 HOLD_PERIODS, HOLD_SEC = 3.0, 1.0
 """The simulated clock is held for HOLD_PERIODS of the expected rate, HOLD_SEC at most."""
-NEAR_PART = 0.1
-"""Two rates count as the same if they differ by at most this part."""
 UNCHANGED_PART = 0.25
 """A rate is unchanged within this part, even on a busy machine; refused values differ by more."""
 ANOTHER_HZ = (4.0, 20.0, 8.0)
@@ -40,6 +39,7 @@ class RateParameter:
     parameters: NodeParameters
     name: str
     topic_name: str
+    _taken_hz: list[float] = field(default_factory=list)
 
     def expect_default(self, rate_hz: float) -> None:
         """The parameter is a double with that value, and the node publishes at that rate."""
@@ -65,6 +65,7 @@ class RateParameter:
         for rate_hz, result in zip(tried, self.parameters.set(self.name, *tried), strict=True):
             if not result.successful:
                 refusals.fail_refused(self.name, rate_hz, result)
+        self._taken_hz.extend(tried)
         value = self.parameters.get(self.name)
         expect(
             value == tried[-1],
@@ -87,7 +88,7 @@ class RateParameter:
             try:
                 recording.assert_rate(rate_hz)
             except CheckFailed as failed:
-                if beside_another and _are_near(recording.rate_hz, before_hz):
+                if beside_another and are_near(recording.rate_hz, before_hz):
                     one_step.fail_unchanged(self.name, before_hz, rate_hz, doubt=type(failed))
                 self._explain(failed, recording, before_hz, rate_hz)
 
@@ -109,7 +110,7 @@ class RateParameter:
         """The node refuses these values (the lowest one last), and its rate does not change."""
         self._expect_refused(kept_hz, rates_hz)
         seen_hz, _ = self._measure(kept_hz)
-        if _are_near(seen_hz, kept_hz, part=UNCHANGED_PART):
+        if are_near(seen_hz, kept_hz, part=UNCHANGED_PART):
             return
         # the rate may have been wrong before: find out whether a refused value changes it
         if seen_hz > kept_hz and self._stays_at(seen_hz, kept_hz, rates_hz[0]):
@@ -121,7 +122,7 @@ class RateParameter:
         self._expect_refused(kept_hz, rates_hz)
         after_hz, doubt = self._measure(kept_hz)
         expect(
-            any(_are_near(after_hz, hz, part=UNCHANGED_PART) for hz in (before_hz, kept_hz)),
+            any(are_near(after_hz, hz, part=UNCHANGED_PART) for hz in (before_hz, kept_hz)),
             expected=f'the same rate as before a value is refused ({before_hz:.3g} Hz)',
             seen=f'{after_hz:.3g} Hz',
             hint='look at all values first, and change the timer only if none is refused',
@@ -132,7 +133,7 @@ class RateParameter:
     def _stays_at(self, seen_hz: float, kept_hz: float, highest_hz: float) -> bool:
         """Whether setting the highest refused rate leaves the rate: older timers caused it."""
         self._expect_refused(kept_hz, [highest_hz])
-        return _are_near(self._measure(kept_hz)[0], seen_hz, part=UNCHANGED_PART)
+        return are_near(self._measure(kept_hz)[0], seen_hz, part=UNCHANGED_PART)
 
     def _expect_refused(self, kept_hz: float, rates_hz: Sequence[float]) -> None:
         refusals.expect_all_refused(self.parameters, self.name, kept_hz, rates_hz)
@@ -142,13 +143,14 @@ class RateParameter:
     ) -> NoReturn:
         """Raise CheckFailed with the reason why a node misses a new rate, else raise `failed`."""
         seen_hz = recording.rate_hz
-        if _are_near(seen_hz, now_hz):
+        if are_near(seen_hz, now_hz):
             raise failed
-        if _are_near(seen_hz, before_hz + now_hz):
+        if are_near(seen_hz, before_hz + now_hz):
             seen = f'{seen_hz:.3g} Hz, which is both together'
             cause = 'the old timer still runs beside the new one'
             hint = 'call self.destroy_timer(…) for the old timer before you create the next one'
-        elif not _are_near(seen_hz, before_hz):
+        elif not are_near(seen_hz, before_hz):
+            older_timers.expect_none(self.name, seen_hz, self._taken_hz, doubt=type(failed))
             raise failed
         elif self._lags(before_hz, now_hz):
             seen = f'{seen_hz:.3g} Hz, the value before'
@@ -175,11 +177,11 @@ class RateParameter:
 
     def _lags(self, before_hz: float, now_hz: float) -> bool:
         """Whether the node is one change behind: the next change brings the rate `now_hz`."""
-        others = [rate_hz for rate_hz in ANOTHER_HZ if not _are_near(rate_hz, before_hz)]
-        another_hz = next(rate_hz for rate_hz in others if not _are_near(rate_hz, now_hz))
+        others = [rate_hz for rate_hz in ANOTHER_HZ if not are_near(rate_hz, before_hz)]
+        another_hz = next(rate_hz for rate_hz in others if not are_near(rate_hz, now_hz))
         self.expect_takes(another_hz)
         seen_hz, _ = self._measure(now_hz)
-        return _are_near(seen_hz, now_hz)
+        return are_near(seen_hz, now_hz)
 
     def _record(self, rate_hz: float) -> Recording:
         """Record the topic, on which `rate_hz` is expected."""
@@ -193,7 +195,3 @@ class RateParameter:
         except CheckFailed:
             return 0.0, CheckFailed
         return recording.rate_hz, CheckFailed if recording.clock == 'simulated' else Starved
-
-
-def _are_near(rate_hz: float, other_hz: float, *, part: float = NEAR_PART) -> bool:
-    return abs(rate_hz - other_hz) <= part * other_hz
