@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.live import action_requests, runner
+from my_robot_basics.live.destroying import destroy
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -86,7 +87,7 @@ def mover():
     node.may_end.set()
     executor.shutdown()
     thread.join()
-    node.destroy_node()
+    destroy(node)
 
 
 def result_of(future):

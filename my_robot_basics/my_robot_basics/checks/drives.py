@@ -8,8 +8,8 @@ from my_robot_basics.checks.inconclusive import NoMessage
 from my_robot_basics.checks.recording import Recording, Sample
 
 SECONDS_ENOUGH = 10.0
-"""If driving the clock takes long, a recording of so many seconds is enough. If it is longer, so
-many seconds are recorded in short steps first."""
+"""If driving the clock takes long, a recording of so many seconds is enough. A longer recording
+begins with so many seconds in short steps."""
 FINER = (1.0, 0.5, 0.1, 0.05, 0.01)
 """Steps of the clock to try, as parts of the given step, until some ticks bring no message.
 

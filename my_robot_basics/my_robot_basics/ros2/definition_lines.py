@@ -8,7 +8,7 @@ import unicodedata
 from typing import Any
 
 from my_robot_basics.feedback.errors import shorten
-from my_robot_basics.ros2.other_types import FORMER, OTHER_NAMES
+from my_robot_basics.ros2.definition_types import FORMER, OTHER_NAMES
 
 MOST_CHARACTERS = 300
 """The longest accepted line, without its comment."""
