@@ -99,6 +99,14 @@ def test_what_is_not_a_plain_timer_looks_as_in_short_steps(timers):
     assert rates.has_rate(found, 5.0) == rates.has_rate(expected, 5.0)
 
 
+@pytest.mark.parametrize('period_sec', [0.204, 0.198, 1 / 6, 0.35])
+def test_messages_that_are_not_equally_far_apart_are_recorded_in_short_steps(period_sec):
+    found, ticks = drive((period_sec, every_call))
+    expected, most = drive((period_sec, every_call), in_long_ticks=False)
+    assert ticks == most
+    assert rates.times_of(found).tolist() == rates.times_of(expected).tolist()
+
+
 @pytest.mark.starts
 @pytest.mark.usefixtures('patient')
 def test_a_minute_of_a_node_needs_few_ticks(monkeypatch):

@@ -83,6 +83,13 @@ def test_messages_at_once_are_named_only_if_the_others_have_the_rate(period_sec,
         made.assert_rate(hz=5.0)
 
 
+def test_messages_at_once_are_not_named_if_others_are_missing():
+    times = [time for number, time in enumerate(every(0.2, 30)) if number % 6 != 5]
+    twice = sorted([*times, times[5] + 0.001, times[15] + 0.001])
+    with pytest.raises(CheckFailed, match='saw pauses of'):
+        recording(twice, clock='wall', seconds=6.0).assert_rate(hz=5.0)
+
+
 @pytest.mark.parametrize('period_sec', [0.2, 0.4])
 def test_a_callback_that_raised_fails_at_any_rate(monkeypatch, period_sec):
     made = recording(every(period_sec))

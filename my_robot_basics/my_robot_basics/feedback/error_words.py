@@ -137,10 +137,6 @@ BY_WORDS = (
         to_do=', so go through the list: for each in the_list',
     ),
     Case(
-        pattern=r'(?<=\w)(?<!\bRandom)(?<!\bNode)(?<!\bPublisher)\.\w+\(\) missing \d+ required',
-        to_do=', so give a callback by its name, without parentheses',
-    ),
-    Case(
         pattern=r'(?:Request|Response|Goal|Feedback|Result|Range|State)\.__init__\(\) takes 1',
         to_do=', so write each field with its name, such as SolveIK.Request(target=point)',
     ),

@@ -4,15 +4,14 @@ import re
 import unicodedata
 
 from my_robot_basics.feedback.action_errors import OF_ACTIONS
+from my_robot_basics.feedback.call_errors import OF_CALLS
 from my_robot_basics.feedback.error_words import BY_WORDS
 from my_robot_basics.feedback.moved_names import MOVED
-from my_robot_basics.feedback.queue_errors import OF_QUEUES
-from my_robot_basics.feedback.ros1_calls import OF_ROS1
 from my_robot_basics.feedback.value_errors import OF_VALUES
 
 _BY_WORDS = tuple(
     (re.compile(words), clause)
-    for words, clause in (*OF_ACTIONS, *BY_WORDS, *MOVED, *OF_QUEUES, *OF_ROS1, *OF_VALUES)
+    for words, clause in (*OF_ACTIONS, *BY_WORDS, *MOVED, *OF_CALLS, *OF_VALUES)
 )
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '

@@ -1,0 +1,36 @@
+"""Hints for wrong calls of nodes, publishers and clients, some as in ROS 1; as in error_words."""
+
+from my_robot_basics.feedback.error_words import Case
+
+OF_CALLS = (
+    Case(
+        pattern=r"missing \d required positional arguments?: .*'qos_profile'",
+        to_do=', so give all arguments: the type, the name, for a subscription the callback, '
+        'and the depth of the queue, such as 10, or a QoS profile',
+    ),
+    Case(
+        # as in ROS 1, or before the callback
+        pattern="keyword argument 'queue_size'"
+        "|Expected QoSProfile or int, but received <class '(?:method|function|str|float)'>",
+        to_do=', so give the depth of the queue as a whole number alone, such as 10, after the '
+        'other arguments',
+    ),
+    Case(
+        # create_timer without a callback, or a callback that was called where it should be given
+        pattern=r"missing 1 required positional argument: 'callback'"
+        r'|(?<=\w)(?<!\bRandom)(?<!\bNode)(?<!\bPublisher)\.\w+\(\) missing \d+ required',
+        to_do=', so give a callback by its name, without parentheses',
+    ),
+    Case(
+        pattern="'Client' object is not callable",
+        to_do=', so send the request with the method call_async of the client',
+    ),
+    Case(
+        pattern="'Publisher' object is not callable",
+        to_do=', so send the message with the method publish of the publisher',
+    ),
+    Case(
+        pattern="a real number, not 'Duration'",
+        to_do=', so give the number of seconds itself, such as 0.2, and no Duration',
+    ),
+)
