@@ -18,6 +18,7 @@ from unpacking import unpacked
 from grader.__main__ import main
 from grader.authoring.bundle import FOLDER, bundle
 from grader.authoring.release import release
+from grader.authoring.reproducible_zip import make_zip
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
 
@@ -103,6 +104,23 @@ def test_a_folder_that_appears_at_the_target_meanwhile_is_not_replaced(course, m
 def test_a_missing_target_folder_is_made(course, fresh_lessons, tmp_path):
     bundle(course, tmp_path / 'new' / 'folder' / 'students.zip')
     assert [each.name for each in (tmp_path / 'new/folder').iterdir()] == ['students.zip']
+
+
+def test_only_a_former_bundle_is_replaced(course, fresh_lessons, tmp_path):
+    lesson = course.root / f'solutions/{TOY}/{TOY}.ipynb'
+    download = tmp_path / 'moodle.zip'
+    download.write_bytes(make_zip({f'Ada_1_assignsubmission_file/{TOY}.ipynb': b'{}'}, ()))
+    pipe = tmp_path / 'pipe'
+    os.mkfifo(pipe)
+    kept = lesson.read_bytes(), download.read_bytes(), pipe.lstat()
+    for target in (lesson, download, pipe):
+        with pytest.raises(CourseError, match='exists, and is not a bundle that could be repl'):
+            bundle(course, target)
+    assert (lesson.read_bytes(), download.read_bytes(), pipe.lstat()) == kept
+    target = tmp_path / 'students.zip'
+    target.write_bytes(make_zip({f'{FOLDER}/course': b'former'}, ()))
+    bundle(course, target)
+    assert len(names(target)) > 1
 
 
 # --- what is in it -------------------------------------------------------------------------------
@@ -279,14 +297,15 @@ PLACES = [
 @pytest.mark.parametrize('secret', [CANARY, '### BEGIN HIDDEN TESTS', '### BROKEN: x = 1'])
 @pytest.mark.usefixtures('fresh_lessons')
 def test_a_secret_in_any_file_is_refused_and_the_former_zip_stays(secret, place, course, tmp_path):
-    (tmp_path / 'students.zip').write_bytes(b'former')
+    former = make_zip({f'{FOLDER}/course': b'former'}, ())
+    (tmp_path / 'students.zip').write_bytes(former)
     place(course, secret)
     with pytest.raises(CourseError, match='no bundle was made') as refusal:
         bundle(course, tmp_path / 'students.zip')
     assert re.search(
         'shows a line of an answer or a hidden test|has a line with', str(refusal.value)
     )
-    assert (tmp_path / 'students.zip').read_bytes() == b'former'
+    assert (tmp_path / 'students.zip').read_bytes() == former
     assert sorted(path.name for path in tmp_path.iterdir()) == ['course', 'students.zip']
 
 

@@ -57,7 +57,7 @@ def test_an_ambiguous_time_at_a_clock_change_is_the_later_one(course, monkeypatc
 
 def test_a_due_date_and_an_extension_can_be_set_and_removed(course, capsys):
     assert due(course, TOY, '2026-11-30') == 0
-    assert due(course, TOY, '2026-12-03 12:00', '--student', '小明 O"Neil') == 0
+    assert due(course, TOY, '--student', '小明 O"Neil', '2026-12-03 12:00') == 0
     said = capsys.readouterr().out
     assert f'{TOY}  due 2026-11-30 23:59 CST' in said
     assert '  extended for 小明 O"Neil until 2026-12-03 12:00 CST' in said

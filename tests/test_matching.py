@@ -35,6 +35,7 @@ def at(tmp_path):
         'inbound/ada+02_joint_state+2026-01-01 10:00:00.5 UTC/02_joint_state.ipynb',
         'ada+02_joint_state+2026-01-01 10_00_00 UTC+xyz=/02_joint_state.ipynb',
         'ada_1815_assignsubmission_file_/02_joint_state.ipynb',
+        'ada_1815_assignsubmission_file_/Copy of 02_joint_state.ipynb',
         'ada_1815_assignsubmission_file_02_joint_state.ipynb',
         'ada_18151_21012_02_joint_state-1.ipynb',
         'ada_LATE_18151_21012_02_joint_state.ipynb',
@@ -64,6 +65,8 @@ def test_names_from_any_alphabet_are_kept(name, at):
         'kurs+02_joint_state+2026-01-01 10:00:00 UTC/02_joint_state.ipynb',
         'homework_02_joint_state.zip/02_joint_state.ipynb',
         'Hausaufgabe 2_02_joint_state.ipynb',
+        'Copy of 02_joint_state.ipynb',
+        'Kopie von 02_joint_state.ipynb',
     ],
 )
 def test_a_word_for_work_or_a_class_is_not_taken_as_a_student(path, at):

@@ -57,6 +57,28 @@ def test_an_upload_of_another_kind_is_refused_in_a_sentence(name, source, tmp_pa
         seen(source / name, tmp_path)
 
 
+@pytest.mark.parametrize(
+    ('name', 'why'),
+    [
+        ('a.ipynb.txt', 'a notebook with another ending: rename it'),
+        ('a.ipynb.JSON', 'a notebook with another ending: rename it'),
+        ('a.ipynb (1)', 'a notebook with another ending: rename it'),
+        ('a.eml', 'a mail: save its attachments'),
+        ('a.ipynb~', None),
+        ('Pose.msg', None),
+    ],
+)
+def test_a_file_that_may_be_the_only_submission_is_not_passed_over(name, why, source, tmp_path):
+    (source / 'ada').mkdir()
+    (source / 'ada' / name).write_text('x')
+    with zipfile.ZipFile(source / 'bob.zip', 'w') as box:
+        box.writestr(name, 'x')
+    found = seen(source, tmp_path)
+    assert len(found) == 2
+    for problem in found.values():
+        assert problem is None if why is None else problem.startswith(why)
+
+
 def test_archives_in_archives_are_unpacked_and_named_like_folders(source, tmp_path):
     inner = zip_of(a_ipynb='x', notes_txt='never unpacked')
     (source / 'class.zip').write_bytes(zip_of(ada_zip=inner, b_py='y'))

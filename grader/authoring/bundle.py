@@ -1,6 +1,7 @@
 """Make the students' zip: only files of a fixed list, all up to date, none with an answer."""
 
 import tempfile
+import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fnmatch import fnmatch
@@ -96,11 +97,16 @@ def bundle(course: Course, target: Path) -> Bundle:
 
 
 def _check_target(target: Path) -> None:
-    """Check early that a file can be written there. Raises CourseError."""
+    """Check early that a file can be written there, and that none is lost. Raises CourseError."""
     if target.is_dir():
         raise CourseError(
             f'no bundle was made: {target} is a folder; expected the file to write: '
             f'./course bundle {target / "students.zip"}'
+        )
+    if target.exists() and not _is_bundle(target):
+        raise CourseError(
+            f'no bundle was made: {target} exists, and is not a bundle that could be replaced. '
+            'Move it away, or name another file: ./course bundle FILE'
         )
     above = next(each for each in target.absolute().parents if each.exists())
     try:
@@ -111,6 +117,17 @@ def _check_target(target: Path) -> None:
             f'no bundle was made: {target} cannot be written, because no file '
             f'can be made in {above} ({error.strerror}). Name another file: ./course bundle FILE'
         ) from None
+
+
+def _is_bundle(file: Path) -> bool:
+    """Whether it was made by `bundle`; a device or a download of students' work was not."""
+    if not file.is_file():
+        return False
+    try:
+        with zipfile.ZipFile(file) as box:
+            return all(name.startswith(f'{FOLDER}/') for name in box.namelist())
+    except (OSError, ValueError, NotImplementedError, zipfile.BadZipFile):
+        return False
 
 
 def _contents(course: Course, faults: list[str]) -> Iterator[tuple[str, bytes]]:

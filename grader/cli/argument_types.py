@@ -9,7 +9,13 @@ from grader.common.argument_values import RECORDED, local_time
 
 
 class VerbParser(argparse.ArgumentParser):
-    """Refuses arguments that a verb does not know, and shows only this verb's usage."""
+    """Refuses arguments that a verb does not know, and shows only this verb's usage.
+
+    An option may be between two others: argparse alone would take `due ASSIGNMENT --student ID
+    DATE` for a command without a date, and call the date unknown.
+    """
+
+    _parses_again = False
 
     def parse_known_args(  # type: ignore[override]  # argparse gives it no other namespace
         self,
@@ -18,6 +24,14 @@ class VerbParser(argparse.ArgumentParser):
     ) -> tuple[argparse.Namespace, list[str]]:
         """Parse the arguments; exit with status 2 if some are unknown."""
         found, left = super().parse_known_args(args, namespace)
+        if self._parses_again:  # called by parse_known_intermixed_args, which goes on with `left`
+            return found, left
+        if left:
+            self._parses_again = True
+            try:
+                found, left = self.parse_known_intermixed_args(args, namespace)
+            finally:
+                self._parses_again = False
         if left:
             self.error(f'unrecognized arguments: {" ".join(left)}')
         return found, left

@@ -86,7 +86,7 @@ class Naming:
         if label and label.platform.names_files_only and not ARCHIVE.search(name):
             self._expect_no_class(student, label, each.parts[at + 1 : -1])
         named = self._forms.parse_assignment_name(stem)
-        if named and not same_person(named.student, student):
+        if named and not self._may_name(named.student, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             where = f'in what {student} handed in' if label else where
             raise UnclearOwner(

@@ -27,6 +27,14 @@ LIMITS_OF_ONE = Limits(cpu_sec=20, wall_sec=300)
 
 OTHER_ARCHIVE = re.compile(r'\.(rar|7z|gz|bz2|xz|zst|lzh|cab|iso|dmg)$', re.IGNORECASE)
 """File name endings of archives that can't be read here."""
+UNREAD = {
+    OTHER_ARCHIVE: 'an archive of another kind: ask for a .zip or .tar.gz',
+    re.compile(r'\.ipynb(\.(txt|json|download)| \(\d+\))$', re.IGNORECASE): (
+        'a notebook with another ending: rename it to end in .ipynb, and collect it again'
+    ),
+    re.compile(r'\.(eml|mbox)$', re.IGNORECASE): 'a mail: save its attachments, and collect them',
+}
+"""Names of files that may be a student's only submission, and what a person can do."""
 
 
 def read_upload(source: Path, aside: Path, packages: Collection[str] = ()) -> Iterator[Incoming]:
@@ -153,10 +161,9 @@ class _Opener:
         """Yield a file; for an archive, the files in it."""
         if each.problem or each.is_litter:
             yield each
-        elif OTHER_ARCHIVE.search(each.parts[-1]) and not ARCHIVE.search(each.parts[-1]):
-            yield replace(each, problem='an archive of another kind: ask for a .zip or .tar.gz')
         elif not ARCHIVE.search(each.parts[-1]):
-            yield each
+            why = [why for form, why in UNREAD.items() if form.search(each.parts[-1])]
+            yield replace(each, problem=why[0]) if why else each
         elif nested > MAX_NESTED:
             yield replace(each, problem=f'more than {MAX_NESTED} archives within each other')
         else:

@@ -21,10 +21,11 @@ _UPLOADS = """
     students abgabe abgaben aufgabe aufgaben hausaufgabe hausaufgaben übung übungen lösung
     lösungen woche kurs devoir devoirs exercice exercices travail rendu semaine tarea tareas
     ejercicio ejercicios entrega semana trabajo compito compiti esercizio esercizi 作业 作業
+    copy kopie copie copia 副本
     """
 _WORDS_OF_NOBODY = frozenset(_UPLOADS.split())
 _BESIDE_THEM = frozenset(
-    {'my', 'the', 'final', 'of', 'for', 'ros', 'jupyter', 'meine', 'mes', 'mis'}
+    {'my', 'the', 'final', 'of', 'for', 'ros', 'jupyter', 'meine', 'mes', 'mis', 'von', 'de', 'di'}
 )
 
 
