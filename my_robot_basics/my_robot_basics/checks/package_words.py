@@ -1,5 +1,6 @@
 """What the student's room reports about a program, as a part of a sentence."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -7,6 +8,9 @@ from my_robot_basics.exchange.endings import error_in, signal_name, why_crashed
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.feedback.python_errors import hint_for_exception
+
+_NO_CAUSE = re.compile('RuntimeWarning: Enable tracemalloc')
+"""Python prints this below the warning about a coroutine that nobody awaits."""
 
 
 def text_in(told: Mapping[str, Any], key: str) -> str:
@@ -31,7 +35,7 @@ def describe_end(code: int | None, said: str) -> str:
 
 def last_words(said: str) -> str:
     """The error in a program's output, or its last line; '' if there was no output."""
-    lines = [line for line in said.splitlines() if line.strip()]
+    lines = [line for line in said.splitlines() if line.strip() and not _NO_CAUSE.match(line)]
     last = error_in(lines) or next(reversed(lines), '')
     return f'{student_text(shorten(last))}{hint_for_exception(last)}' if last else ''
 
