@@ -61,6 +61,21 @@ def test_the_warning_about_a_main_that_nobody_awaits_is_shown():
     assert "exit code 1, sys:1: RuntimeWarning: coroutine 'main' was never awaited, so" in shown
 
 
+@pytest.mark.parametrize(
+    ('error', 'advice'),
+    [
+        ("AttributeError: 'NoneType' object has no attribute 'reachable'", 'correct this error'),
+        ("NameError: name 'ExternalShutdownException' is not defined", 'correct this error first'),
+        ('KeyboardInterrupt', 'in main, catch KeyboardInterrupt'),
+        ('rclpy.executors.ExternalShutdownException', 'in main, catch KeyboardInterrupt'),
+        (f'rclpy._rclpy_pybind11.RCLError: failed to shutdown: {RACE}', 'call rclpy.try_shutdown'),
+    ],
+)
+def test_only_an_interrupt_is_to_be_caught_for_a_clean_end(error, advice):
+    said = f'Traceback (most recent call last):\n  File "x", line 1, in main\n{error}'
+    assert advice in package_words.why_not_clean(1, said)
+
+
 def test_the_error_is_picked_from_the_output_of_colcon():
     words = (
         'Starting >>> greeter\n--- stderr: greeter\nTraceback (most recent call last):\n'

@@ -39,6 +39,19 @@ WRONG = (
         dict.fromkeys(('package_runs', 'arm_player_plays'), 'so get its value'),
     ),
     Change(
+        'result_without_spinning',
+        swap(
+            PLAYER,
+            (
+                '        rclpy.spin_until_future_complete(self, future)\n'
+                '        if not future.done():\n            raise ExternalShutdownException\n',
+                '',
+            ),
+        ),
+        (1, 0, 0),
+        {'package_runs': "'NoneType' object", 'arm_player_plays': "'NoneType' object"},
+    ),
+    Change(
         'no_marker_file', without('resource/arm_player'), NOTHING, {'package_builds': 'resource/'}
     ),
     Change(

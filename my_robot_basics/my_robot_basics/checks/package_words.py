@@ -13,6 +13,14 @@ _NO_CAUSE = re.compile('RuntimeWarning: Enable tracemalloc')
 """Python prints this below the warning about a coroutine that nobody awaits."""
 
 
+_OWN_ERROR = re.compile('(?:Attribute|Name|UnboundLocal|Type|Key|Index|ZeroDivision)Error')
+"""Mistakes in the program, which no Ctrl-C raises."""
+CLEANLY = (
+    'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
+    'rclpy.try_shutdown() at the end'
+)
+
+
 def text_in(told: Mapping[str, Any], key: str) -> str:
     """The text under that key in the student's room's answer, or '' if there is no text."""
     text = told.get(key)
@@ -46,6 +54,18 @@ def why_ended(code: int | None, package: str, executable: str) -> str:
         return 'main has returned: let it spin the node until Ctrl-C'
     run_it = f"run it with run_executable('{package}', '{executable}') and read why"
     return why_crashed(code) or run_it
+
+
+def why_not_clean(code: int | None, said: str) -> str:
+    """Advice about a program that ended after Ctrl-C, but with an error."""
+    if why := why_crashed(code, at_end=True):
+        return why
+    if _OWN_ERROR.match(error_in(said.splitlines())):
+        return (
+            'correct this error first; if it comes only after Ctrl-C, which ends a wait for a '
+            'future, look at future.done() before you use its result'
+        )
+    return CLEANLY
 
 
 def why_it_goes_on(told: Mapping[str, Any]) -> str:
