@@ -172,6 +172,33 @@ WRONG = {
         turns('int32[2] turns', 'int32[2]\u00a0turns'),
         'a no-break space or the',
     ),
+    'brackets of a Chinese keyboard': (
+        turns('int32[2]', 'int32\u30102\u3011'),
+        "it has '\u3010', a full-width character: write '['",
+    ),
+    'a dash of a word processor': (
+        turns('MOTOR1=0', 'MOTOR1=\u20130'),
+        "it has '\u2013': write '-' in its place",
+    ),
+    'an invisible character': (turns('int32[2] ', 'int32[2]\u200b '), 'an invisible character'),
+    'a byte order mark': ({'turns_msg': '\ufeff' + TURNS.strip()}, 'an invisible character'),
+    'a list of Markdown': (
+        turns('int32[2]', '- int32[2]'),
+        "a line begins with its type, without '-' before it",
+    ),
+    'the table of the task': (
+        turns('std_msgs/Header header', '| header | std_msgs/Header |'),
+        "a line begins with its type, without '|' before it",
+    ),
+    'a constant without a type or a space': (
+        turns('uint8 MOTOR1=0', 'MOTOR1=0'),
+        'its type before its name',
+    ),
+    'a type of two words': (
+        turns('uint8 MOTOR1', 'unsigned char MOTOR1'),
+        'there is no type unsigned: write',
+    ),
+    'a vector of C++': (turns('int32[2]', 'vector<int32>'), 'exactly two values [2]'),
     'the name of the file': (count('Turns total', 'Turns.msg total'), 'after its name: Turns'),
     'std_msgs': (count('bool success', 'std_msgs/Bool success'), 'write the plain type, bool'),
     'space in the type': (turns('int32[2]', 'int32 [2]'), 'no space between a type and its'),
@@ -187,6 +214,7 @@ WRONG = {
     'Markdown': (turns('uint8 MOTOR1', '```msg\nuint8 MOTOR1'), 'a mark of Markdown'),
     'a heading': (count('bool success', 'Response:\nbool success'), 'a heading begins with #'),
     'no name': (count('bool success', 'bool'), 'a line has a type and a name'),
+    'a bound and no name': (count(' each_second', ''), 'a line has a type and a name'),
     'indented line': (count('string message', '  string message'), 'no space before the type'),
     'keyword': (count('bool success', 'bool success\nstring from'), 'from is a word of Python'),
     'twice': (count('bool success', 'bool success\nbool success'), 'two of the name success'),

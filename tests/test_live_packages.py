@@ -261,7 +261,7 @@ def test_the_error_of_an_executable_that_ends_at_once_is_reported(folder, capsys
         ({'resource/greeter': None}, 'setup.py installs resource/greeter, and there is no such'),
         pytest.param(
             {'setup.cfg': None},
-            'are in bin/, where `ros2 run` does not look: write a setup.cfg',
+            'are in bin/, where `ros2 run` does not look: write into setup.cfg',
             marks=pytest.mark.slow,
         ),
         pytest.param(

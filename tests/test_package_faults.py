@@ -5,6 +5,7 @@ import sys
 import types
 
 import pytest
+from my_robot_basics.checks import package_words
 from my_robot_basics.exchange.endings import RACE, is_clean, why_crashed
 from my_robot_basics.live import executables
 from my_robot_basics.live.install_faults import fault_in_install
@@ -51,6 +52,30 @@ def test_a_second_race_of_rclpy_is_clean_only_with_try_shutdown():
     assert is_clean(1, [first, '    rclpy.try_shutdown()', last], is_second=True)
 
 
+def test_the_warning_about_a_main_that_nobody_awaits_is_shown():
+    said = (
+        "<coroutine>\nsys:1: RuntimeWarning: coroutine 'main' was never awaited\n"
+        'RuntimeWarning: Enable tracemalloc to get the object allocation traceback'
+    )
+    shown = package_words.describe_end(1, said)
+    assert "exit code 1, sys:1: RuntimeWarning: coroutine 'main' was never awaited, so" in shown
+
+
+@pytest.mark.parametrize(
+    ('error', 'advice'),
+    [
+        ("AttributeError: 'NoneType' object has no attribute 'reachable'", 'correct this error'),
+        ("NameError: name 'ExternalShutdownException' is not defined", 'correct this error first'),
+        ('KeyboardInterrupt', 'in main, catch KeyboardInterrupt'),
+        ('rclpy.executors.ExternalShutdownException', 'in main, catch KeyboardInterrupt'),
+        (f'rclpy._rclpy_pybind11.RCLError: failed to shutdown: {RACE}', 'call rclpy.try_shutdown'),
+    ],
+)
+def test_only_an_interrupt_is_to_be_caught_for_a_clean_end(error, advice):
+    said = f'Traceback (most recent call last):\n  File "x", line 1, in main\n{error}'
+    assert advice in package_words.why_not_clean(1, said)
+
+
 def test_the_error_is_picked_from_the_output_of_colcon():
     words = (
         'Starting >>> greeter\n--- stderr: greeter\nTraceback (most recent call last):\n'
@@ -73,6 +98,12 @@ def test_the_error_is_picked_from_the_output_of_colcon():
     )
     assert 'greeter: setup.py, line 3: ModuleNotFoundError: No' in fault_in_words(
         'greeter', 1, words
+    )
+    words = (
+        "RuntimeError: 'distutils.core.setup()' was never called -- perhaps 'setup.py' is not\n"
+    )
+    assert 'without a comma between them: run `python3 setup.py --name` in greeter/' in (
+        fault_in_words(PACKAGE, 1, words)
     )
     assert 'ended by SIGKILL' in fault_in_words(PACKAGE, -9, '')
 
@@ -102,6 +133,7 @@ def installed(tmp_path, entry):
         ('greet = greeter.greet:main', 'def main(:', 'greeter/greet.py is not valid Python (line'),
         ('greet = greeter.greet:main', None, 'greeter/greet.py was not installed, and greet'),
         ('greet = grete.greet:main', NODE, 'and there is no package grete: correct it'),
+        ('greet = greeter.greet.py:main', NODE, 'leave out .py'),
         ('greet = a b c', NODE, 'has no executable: name one in entry_points'),
     ],
 )
@@ -112,6 +144,16 @@ def test_a_faulty_entry_point_is_reported(tmp_path, entry, module, words):
         (site / 'greeter/greet.py').write_text(module)
     said = fault_in_install(PACKAGE, prefix, files)
     assert (words in said) if words else (said == '')
+
+
+@pytest.mark.parametrize('name', ['bin', 'lib/other'])
+def test_the_folder_in_which_the_executables_are_is_named(tmp_path, name):
+    files = package_files.read(make_package(tmp_path))
+    prefix, _ = installed(tmp_path, 'greet = greeter.greet:main')
+    (prefix / 'lib/greeter').rmdir()
+    (prefix / name).mkdir()
+    said = fault_in_install(PACKAGE, prefix, files)
+    assert f'the executables of greeter are in {name}/, where `ros2 run` does not look' in said
 
 
 @pytest.mark.parametrize(

@@ -235,6 +235,21 @@ def test_a_loop_over_the_keys_of_a_dict_is_recognised_by_the_students_line():
     assert hint_for_exception(f'{said}solutions.items():)') == ''
 
 
+@pytest.mark.parametrize(
+    ('said', 'to_do'),
+    [
+        ("TypeError: 'Parameter' object is not subscriptable", 'so get its value: self.get_param'),
+        (
+            "TypeError: main() missing 1 required positional argument: 'args'",
+            'def main(args=None)',
+        ),
+        ("sys:1: RuntimeWarning: coroutine 'main' was never awaited", 'def main without async'),
+    ],
+)
+def test_errors_at_the_start_of_an_executable_are_explained(said, to_do):
+    assert to_do in hint_for_exception(said)
+
+
 def test_an_exhausted_iterator_in_a_coroutine_is_explained():
     said = 'RuntimeError: coroutine raised StopIteration'
     assert hint_for_exception(said) == ', so start again when next(…) finds no more'

@@ -1,6 +1,6 @@
 """Packages for lesson 12 with one mistake each, and hostile ones."""
 
-from package_changes import DRIVER, PLAYER, SETUP, Change, Files, swap, without
+from package_changes import CHECKS, DRIVER, PLAYER, SETUP, Change, Files, swap, without
 
 NOTHING = 0, 0, 0
 _FEEDBACK = (
@@ -27,9 +27,57 @@ WRONG = (
         {'package_builds': 'write a colon and the function after the module'},
     ),
     Change(
+        'async_main',
+        swap(PLAYER, ('def main', 'async def main')),
+        (1, 0, 0),
+        dict.fromkeys(('package_runs', 'arm_player_plays'), 'def main without async'),
+    ),
+    Change(
+        'parameter_without_value',
+        swap(PLAYER, ("get_parameter('targets').value", "get_parameter('targets')")),
+        (1, 0, 0),
+        dict.fromkeys(('package_runs', 'arm_player_plays'), 'so get its value'),
+    ),
+    Change(
+        'result_without_spinning',
+        swap(
+            PLAYER,
+            (
+                '        rclpy.spin_until_future_complete(self, future)\n'
+                '        if not future.done():\n            raise ExternalShutdownException\n',
+                '',
+            ),
+        ),
+        (1, 0, 0),
+        {'package_runs': "'NoneType' object", 'arm_player_plays': "'NoneType' object"},
+    ),
+    Change(
         'no_marker_file', without('resource/arm_player'), NOTHING, {'package_builds': 'resource/'}
     ),
-    Change('no_setup_cfg', without('setup.cfg'), NOTHING, {'package_builds': 'setup.cfg'}),
+    Change(
+        'no_setup_cfg',
+        without('setup.cfg'),
+        NOTHING,
+        dict.fromkeys(CHECKS, 'are in bin/.*setup.cfg'),
+    ),
+    Change(
+        'setup_cfg_of_another_package',
+        swap('setup.cfg', ('lib/arm_player', 'lib/hello_arm')),
+        NOTHING,
+        dict.fromkeys(CHECKS, 'are in lib/hello_arm/.*setup.cfg'),
+    ),
+    Change(
+        'no_comma_between_entry_points',
+        swap(SETUP, ("arm_driver:main',", "arm_driver:main'")),
+        NOTHING,
+        dict.fromkeys(CHECKS, 'without a comma between them'),
+    ),
+    Change(
+        'entry_point_with_py',
+        swap(SETUP, ('arm_player.arm_player:main', 'arm_player.arm_player.py:main')),
+        NOTHING,
+        {'package_builds': 'leave out .py'},
+    ),
     Change('no_setup_py', without('setup.py'), NOTHING, {'package_builds': 'setup.py'}),
     Change('no_package_xml', without('package.xml'), NOTHING, {'package_builds': 'package.xml'}),
     Change(

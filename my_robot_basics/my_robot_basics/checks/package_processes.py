@@ -27,10 +27,6 @@ GONE_SEC = 8.0
 """How long its node may stay on the graph, in s of free time: DDS's lease of 5 s and a margin."""
 ASK_EVERY_SEC, ASK_END_EVERY_SEC = 0.3, 0.05
 """How often to ask the notebook whether the process has ended: normally, and if it should end."""
-CLEANLY = (
-    'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
-    'rclpy.try_shutdown() at the end'
-)
 
 
 class RunningExecutable:
@@ -117,7 +113,7 @@ class RunningExecutable:
         self._wait_for_end(f'{self.executable} to end after SIGINT', END_SEC)
         code, said = self._state()
         if not is_clean(code, said.splitlines(), is_second=self._is_second):
-            self._expect_code(0, hint=why_crashed(code, at_end=True) or CLEANLY)
+            self._expect_code(0, hint=package_words.why_not_clean(code, said))
         self._expect_gone()
         if code and not self._is_second:
             self._expect_clean_second_end()

@@ -1,5 +1,6 @@
 """What the student's room reports about a program, as a part of a sentence."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -7,6 +8,17 @@ from my_robot_basics.exchange.endings import error_in, signal_name, why_crashed
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.feedback.python_errors import hint_for_exception
+
+_NO_CAUSE = re.compile('RuntimeWarning: Enable tracemalloc')
+"""Python prints this below the warning about a coroutine that nobody awaits."""
+
+
+_OWN_ERROR = re.compile('(?:Attribute|Name|UnboundLocal|Type|Key|Index|ZeroDivision)Error')
+"""Mistakes in the program, which no Ctrl-C raises."""
+CLEANLY = (
+    'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
+    'rclpy.try_shutdown() at the end'
+)
 
 
 def text_in(told: Mapping[str, Any], key: str) -> str:
@@ -31,7 +43,7 @@ def describe_end(code: int | None, said: str) -> str:
 
 def last_words(said: str) -> str:
     """The error in a program's output, or its last line; '' if there was no output."""
-    lines = [line for line in said.splitlines() if line.strip()]
+    lines = [line for line in said.splitlines() if line.strip() and not _NO_CAUSE.match(line)]
     last = error_in(lines) or next(reversed(lines), '')
     return f'{student_text(shorten(last))}{hint_for_exception(last)}' if last else ''
 
@@ -42,6 +54,18 @@ def why_ended(code: int | None, package: str, executable: str) -> str:
         return 'main has returned: let it spin the node until Ctrl-C'
     run_it = f"run it with run_executable('{package}', '{executable}') and read why"
     return why_crashed(code) or run_it
+
+
+def why_not_clean(code: int | None, said: str) -> str:
+    """Advice about a program that ended after Ctrl-C, but with an error."""
+    if why := why_crashed(code, at_end=True):
+        return why
+    if _OWN_ERROR.match(error_in(said.splitlines())):
+        return (
+            'correct this error first; if it comes only after Ctrl-C, which ends a wait for a '
+            'future, look at future.done() before you use its result'
+        )
+    return CLEANLY
 
 
 def why_it_goes_on(told: Mapping[str, Any]) -> str:

@@ -33,4 +33,12 @@ OF_CALLS = (
         pattern="a real number, not 'Duration'",
         to_do=', so give the number of seconds itself, such as 0.2, and no Duration',
     ),
+    Case(
+        pattern=r'\bmain\(\) missing 1 required positional argument',
+        to_do=', so write def main(args=None): an executable calls it without arguments',
+    ),
+    Case(
+        pattern="coroutine 'main' was never awaited",
+        to_do=', so write def main without async: an executable calls it as a plain function',
+    ),
 )

@@ -5,6 +5,7 @@ import unicodedata
 
 from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
+from my_robot_basics.feedback.characters import in_ascii
 from my_robot_basics.feedback.error_words import BY_WORDS
 from my_robot_basics.feedback.moved_names import MOVED
 from my_robot_basics.feedback.value_errors import OF_VALUES
@@ -19,13 +20,6 @@ _NAME = re.compile(
 )
 """rcl's message about an invalid name, with a caret under the wrong character one line below."""
 _CHARACTER = re.compile(r"invalid (?:character '(.)' \(|non-printable character )U\+")
-_MARKS = {
-    **dict.fromkeys('‘’‚‛′', "'"),
-    **dict.fromkeys('“”„‟″', '"'),
-    **dict.fromkeys('‐‑‒–—−', '-'),
-    **{'。': '.', '、': ',', '【': '[', '】': ']', '《': '<', '》': '>', '×': '*', '÷': '/'},
-}
-"""Characters of word processors and other keyboards, and what Python expects in their place."""
 
 
 def with_hint(told: str) -> str:
@@ -49,9 +43,8 @@ def _about_character(character: str | None) -> str:
     """Return which character to type in place of this one; None is an invisible one."""
     if character is None:
         return ', so type that line again: it has a space of another kind, as copied text may have'
-    plain = _MARKS.get(character) or unicodedata.normalize('NFKC', character)
-    is_wide = unicodedata.east_asian_width(character) == 'F' and plain.isascii()
-    return f', so write {plain!r} in its place' if is_wide or character in _MARKS else ''
+    plain = in_ascii(character)
+    return f', so write {plain!r} in its place' if plain else ''
 
 
 def _about_name(name: str, *, is_node: bool) -> str:

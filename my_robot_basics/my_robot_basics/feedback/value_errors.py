@@ -19,4 +19,8 @@ OF_VALUES = (
         pattern='is not a list of one of the allowed types',
         to_do=', so write numbers of one type in a single list, such as [0.0, 0.0]',
     ),
+    Case(
+        pattern="'Parameter' object is not (?:subscriptable|iterable)",
+        to_do=", so get its value: self.get_parameter('…').value",
+    ),
 )

@@ -30,9 +30,12 @@ def fault_in_install(package: str, prefix: Path, files: PackageFiles) -> str:
             f"{{'console_scripts': ['NAME = {package}.MODULE:main']}}"
         )
     if entries and not scripts.is_dir():
+        others = (path.name for path in sorted((prefix / 'lib').iterdir()))
+        place = next((f'lib/{name}' for name in others if not name.startswith('python')), 'bin')
         return (
-            f'the executables of {package} are in bin/, where `ros2 run` does not look: write a '
-            f'setup.cfg with [install] and install_scripts=$base/lib/{package}'
+            f'the executables of {package} are in {short(place)}/, where `ros2 run` does not '
+            'look: write into setup.cfg, below [install], '
+            f'install_scripts=$base/lib/{package}'
         )
     site = prefix / 'lib/python{}.{}/site-packages'.format(*sys.version_info)
     faults = (_fault_of_entry(entry, package, site, files) for entry in entries)
@@ -82,6 +85,8 @@ def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageF
             f'entry_points of setup.py has {line!r}, which names no function: write a colon and '
             f'the function after the module, {package}.MODULE:main'
         )
+    if entry.module.endswith('.py'):
+        return f'entry_points of setup.py has {line!r}: leave out .py, a module has no such ending'
     path = entry.module.replace('.', '/')
     names = (f'{path}.py', f'{path}/__init__.py')
     top = entry.module.partition('.')[0]

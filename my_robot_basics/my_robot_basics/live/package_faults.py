@@ -12,6 +12,8 @@ _LAST_LINE = re.compile(r'^(?:\w+\.)*(\w*(?:Error|Exception|Interrupt|Exit|Warni
 _IN_FILE = re.compile(r'^\s*File "(?P<file>[^"]+)", line (?P<line>\d+)')
 _CANNOT_COPY = re.compile(r"error: can't copy '([^']+)'")
 _SETUP_ERROR = re.compile(r'^error: (.+)$')
+_REFUSED = re.compile(r"setup\(\)' was never called")
+"""What is left of an error in the arguments of setup(): colcon discards its message."""
 _COLCONS = ('CalledProcessError', 'DeprecationWarning', 'SetuptoolsDeprecationWarning')
 """Errors and warnings of colcon and setuptools themselves, beside the package's own error."""
 _MOST = 300
@@ -84,6 +86,13 @@ def fault_in_words(package: str, status: int, words: str) -> str:
                 f'in {package}/, and an empty file {package} in it'
             )
         return f'setup.py installs {short(path)}, and there is no such file: correct data_files'
+    if _REFUSED.search(words):
+        return (
+            f'colcon does not build {package}: setup.py calls no setup(), or setup() refuses a '
+            f"value, such as an entry point that is not 'NAME = {package}.MODULE:main', or two "
+            f'without a comma between them: run `python3 setup.py --name` in {package}/, which '
+            'tells why'
+        )
     return f'colcon does not build {package}: {_last_error(lines)}: fix that, and build again'
 
 

@@ -56,7 +56,7 @@ def run_executable(package: str, executable: str, *arguments: str) -> bool:
     try:
         executables.start(package, executable, arguments)
     except NotRunnable as error:
-        tell(f'not started: {error}', in_one=False)
+        tell(f'not started: {_why_not_started(package, error)}', in_one=False)
         return False
     return True
 
@@ -101,7 +101,7 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
         try:
             number, _ = executables.start(package, name, list(arguments), by_check=True)
         except (NotRunnable, OSError) as error:
-            return {'problem': str(error)[:MOST_SAID]}
+            return {'problem': _why_not_started(package, error)[:MOST_SAID]}
         return {'number': number}
     if verb == 'handlers':
         return {'own': package_signals.handles_ctrl_c(packages_folder() / package)}
@@ -114,6 +114,12 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
         found.process.wait_for_lines()
     code = found.process.code
     return {'code': code, 'said': '\n'.join(found.process.lines)[-MOST_SAID:]}
+
+
+def _why_not_started(package: str, error: Exception) -> str:
+    """Return the fault of the build, if it has one: that is why there is no executable."""
+    built = _builds.get(package)
+    return built.problem if built and built.problem else str(error)
 
 
 def _build_reply(built: Build | None) -> dict[str, Any]:

@@ -4,16 +4,15 @@ import contextlib
 import io
 import keyword
 import re
-import unicodedata
 from typing import Any
 
 from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.ros2.definition_characters import about_characters
 from my_robot_basics.ros2.definition_types import FORMER, OTHER_NAMES
 
 MOST_CHARACTERS = 300
 """The longest accepted line, without its comment."""
 
-_ASCII = {chr(code) for code in range(33, 127)}
 _CONSTANT_NAME = re.compile('[A-Z](?:_?[A-Z0-9])*')
 """The names that rosidl accepts; its own pattern takes hours for some long names."""
 _FIELD_NAME = re.compile('[a-z](?:_?[a-z0-9])*')
@@ -39,13 +38,13 @@ def parse_line(package: str, line: str) -> Any:
         raise BadLine('rosidl takes no space before the type')
     if equals and not _CONSTANT_NAME.fullmatch(name):
         # not a constant if = belongs to an array's bound, as in int32[<=60]
-        about_line = _about_characters(line) or _about_form(type_name, rest)
+        about_line = about_characters(line) or _about_form(type_name, rest)
         raise BadLine(about_line or _about_constant(type_name, name))
     try:
         return _parsed(package, line)
     except Exception as error:
         # rosidl passes on what its conversions raise: TypeError, NameError, IndexError, …
-        raise BadLine(_about_characters(line) or _why(type_name, rest, error)) from None
+        raise BadLine(about_characters(line) or _why(type_name, rest, error)) from None
 
 
 def parse_whole(package: str, name: str, text: str, *, kind: str) -> None:
@@ -83,19 +82,6 @@ def _parsed(package: str, line: str) -> Any:
     return member
 
 
-def _about_characters(line: str) -> str:
-    """Say which character of another keyboard, or comment of another language, a line has."""
-    for character in line:
-        plain = unicodedata.normalize('NFKC', character)
-        if plain == ' ' != character:
-            return 'one of its spaces is a no-break space or the like: type it again'
-        if unicodedata.east_asian_width(character) == 'F' and plain in _ASCII:
-            return f'it has {character!r}, a full-width character: write {plain!r}'
-    if re.search(r'(?<!:)//|/\*', line):
-        return 'a comment begins with #'
-    return ''
-
-
 def _about_constant(type_name: str, name: str) -> str:
     if not name and _CONSTANT_NAME.fullmatch(type_name):
         return 'a constant has its type before its name, like: uint8 OPEN=1'
@@ -104,6 +90,8 @@ def _about_constant(type_name: str, name: str) -> str:
             f'= makes a constant, whose name is in capital letters ({name.upper()}); the default '
             'value of a field is written without ='
         )
+    if ' ' in name and (about_type := _about_type(type_name)):
+        return about_type  # a type of two words, such as unsigned char
     return f'{shorten(name, 40)!r} is no name of a constant: use A to Z, digits and single _'
 
 
@@ -124,8 +112,13 @@ def _why(type_name: str, rest: str, error: Exception) -> str:
 def _about_form(type_name: str, rest: str) -> str:
     if type_name.startswith(('```', '~~~')):
         return 'this is a mark of Markdown, and no line of the file: leave it out'
+    before, equals, _ = type_name.partition('=')
+    if not rest and equals and _CONSTANT_NAME.fullmatch(before):
+        return 'a constant has its type before its name, like: uint8 OPEN=1'
     if not rest:
         return 'a line has a type and a name, like: float64 speed; a heading begins with #'
+    if not re.search(r'\w', type_name):
+        return f'a line begins with its type, without {shorten(type_name, 10)!r} before it'
     if type_name == 'const':
         return 'leave out const: a line begins with its type, and = alone makes a constant'
     if type_name.endswith(':') or rest.startswith(':'):
@@ -152,6 +145,8 @@ def _about_type(type_name: str) -> str:
         return 'an array is written [], exactly two values [2], at most two [<=2]'
     if plain.startswith(('string<', 'wstring<')):
         return 'a text of at most ten characters is written string<=10'
+    if re.search('<[A-Za-z]', plain):
+        return 'an array is written [], exactly two values [2], at most two [<=2]'
     if '<' in plain:
         return 'at most two values are written with brackets: float64[<=2]'
     if plain in OTHER_NAMES:
