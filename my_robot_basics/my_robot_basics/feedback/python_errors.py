@@ -24,8 +24,9 @@ _MARKS = {
     **dict.fromkeys('“”„‟″', '"'),
     **dict.fromkeys('‐‑‒–—−', '-'),
     **{'。': '.', '、': ',', '【': '[', '】': ']', '《': '<', '》': '>', '×': '*', '÷': '/'},
+    **{'≤': '<=', '≥': '>=', '≠': '!=', '²': '**2', '³': '**3', '·': '*', '⋅': '*'},
 }
-"""Characters of word processors and other keyboards, and what Python expects in their place."""
+"""Characters of word processors, formulas and other keyboards, and what Python has for them."""
 
 
 def with_hint(told: str) -> str:
