@@ -80,11 +80,15 @@ def test_a_late_recording_excuses_only_rates_that_a_busy_machine_can_cause(
         ([*[0.2] * 9, 0.4, *[0.2] * 9], True, Starved),
         ([*[0.2] * 9, 0.4, *[0.2] * 9], False, CheckFailed),
         ([*[0.21] * 9, 0.42, *[0.21] * 9], True, CheckFailed),
+        ([0.03, *[0.2] * 19], True, Starved),
+        ([0.03, *[0.2] * 19], False, CheckFailed),
+        ([0.03, *[0.19] * 19], True, CheckFailed),
     ],
     ids=[
         *('0.7 of the rate', 'nearly right', 'idle', '4.5 Hz'),
         *('late each time', 'late each time, idle', 'early each time'),
         *('one pause', 'one pause, idle', 'one pause of another rate'),
+        *('the first is late', 'the first is late, idle', 'the first of another rate is late'),
     ],
 )
 def test_a_busy_machine_excuses_small_errors_of_a_recording_in_time(

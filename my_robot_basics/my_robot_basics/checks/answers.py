@@ -8,6 +8,11 @@ from my_robot_basics.checks import angles
 
 MOST_NUMBERS = 1_000
 """How many different numbers a node may log for one target: of many thousands, some match."""
+NO_ANGLES = (
+    'the INFO log names branches, and no angle: inverse_kinematics returns a dict, so go through '
+    'its .items(), each a branch and its two angles'
+)
+"""Advice if someone took the keys of that dict for its values."""
 _NUMBER = re.compile(r'([±∓]|\+/[-−]|[-−]/\+)?([-−+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
 _NAN = re.compile(r'\bnan\b', re.IGNORECASE)
 _BRACES = re.compile(r'\{[A-Za-z_][^{}]*\}')
@@ -76,6 +81,8 @@ def why_unreadable(wanted: Sequence[float], texts: Sequence[str]) -> str:
     parted = [number for text in texts for number in numbers_of(_HYPHEN.sub(' ', text))]
     if not angles.missing(wanted, parted):
         return 'a - right before a number is its sign: put a colon or a space between'
+    if not parted and any('elbow' in text.lower() for text in texts):
+        return NO_ANGLES
     return ''
 
 

@@ -25,6 +25,11 @@ SIGNS = {
 """Advice for a mirrored pose, with the factors that mirror it."""
 CONVERT = 'convert both angles with radians(), θ1 for joint1, θ2 for joint2'
 """Advice for a pose that does not look like a known mistake."""
+NO_POSITIONS = (
+    'put one position for each joint into the field `position`: JointState(…) ignores arguments '
+    'of any other name, such as `positions`'
+)
+"""Advice for an empty list: rclpy checks the names of arguments only if it is told to."""
 CONVERT_EACH = (
     'other angles came out right: convert each with radians(), whatever its sign or size, and keep'
     ' nothing of those before'
@@ -115,6 +120,8 @@ def why_off(
     right = [math.radians(angle) for angle in pose_deg]
     if len(seen) > len(right) and len(seen) % len(right) == 0:
         return 'it adds to the positions of the call before: make a new message and list each time'
+    if not seen:
+        return NO_POSITIONS
     if len(seen) != len(right):
         return 'put one position for each joint into the list'
     if not all(map(math.isfinite, seen)):
@@ -145,6 +152,13 @@ def why_off(
     if not found and _are_near([min(each, math.tau - each) for each in off], [0.0] * len(off)):
         return 'it is a whole turn too far: convert the angle as it is given, without % 360'
     return next(iter(found), CONVERT_EACH if others_right else CONVERT)
+
+
+def why_names(seen: Sequence[str], names: Sequence[str]) -> str:
+    """Advice for names that are not these; several rounds of these come from one list."""
+    if len(seen) > len(names) and set(seen) == set(names):
+        return 'it adds to the names of the call before: make a new message and list each time'
+    return 'message.name is a list of the joint names of the URDF, letter for letter'
 
 
 def tells_to_convert(advice: str) -> bool:

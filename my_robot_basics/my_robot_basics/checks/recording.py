@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from my_robot_basics.checks import (
     callbacks,
+    joints,
     periods,
     pictures,
     positions,
@@ -120,7 +121,7 @@ class Recording:
                 sorted(message.name) == sorted(names),
                 expected=f'the joint names {", ".join(map(repr, names))}',
                 seen=shorten(', '.join(map(repr, message.name))) or 'none',
-                hint='message.name is a list of the joint names of the URDF, letter for letter',
+                hint=joints.why_names(message.name, names),
             )
 
     def assert_positions_rad(

@@ -30,6 +30,22 @@ OF_CALLS = (
         to_do=', so send the message with the method publish of the publisher',
     ),
     Case(
+        pattern=r'(?:JointState|Header|Point|Time)\.__init__\(\) takes 1',
+        to_do=', so write each field with its name, such as Point(x=1.2, y=0.8)',
+    ),
+    Case(
+        pattern="'super' object has no attribute '_*init_*'",
+        to_do=', so write super().__init__, with two underscores on each side of init',
+    ),
+    Case(
+        pattern="'RcutilsLogger' object has no attribute",
+        to_do=', so call the method info, warning or error of the logger',
+    ),
+    Case(
+        pattern=r'\bKeyError: ',
+        to_do=', so use a key that the dict has: print(list(…)) of the dict shows them',
+    ),
+    Case(
         pattern="a real number, not 'Duration'",
         to_do=', so give the number of seconds itself, such as 0.2, and no Duration',
     ),

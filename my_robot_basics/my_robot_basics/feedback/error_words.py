@@ -75,7 +75,7 @@ BY_WORDS = (
         to_do=', so write True, False or None with a capital letter',
     ),
     Case(
-        pattern=r"name '\w+' is not defined$",
+        pattern=r"name '(?!(?:self|rospy)')\w+' is not defined$",
         to_do=', so import or define it first, or put it in quotes if it is a text',
     ),
     Case(
@@ -105,7 +105,8 @@ BY_WORDS = (
     ),
     Case(
         pattern='must be real number, not (?:list|tuple)',
-        to_do=', so convert each number by itself: [radians(angle) for angle in angles]',
+        to_do=', so convert each number by itself: [radians(angle) for angle in angles]; two '
+        'arguments need no inner brackets: hypot(x, y)',
     ),
     Case(
         pattern="'float' object is not iterable",
@@ -137,11 +138,13 @@ BY_WORDS = (
         to_do=', so go through the list: for each in the_list',
     ),
     Case(
-        pattern=r'(?:Request|Response|Goal|Feedback|Result|Range|State)\.__init__\(\) takes 1',
+        pattern=r'(?:Request|Response|Goal|Feedback|Result|Range|(?<!t)State)'
+        r'\.__init__\(\) takes 1',
         to_do=', so write each field with its name, such as SolveIK.Request(target=point)',
     ),
     Case(
-        pattern="(?:_(?:Request|Response|Goal|Result|Feedback)|JointState)' object has no attr",
+        pattern="'(?:JointState|Header|Point|String|Int32|\\w+_(?:Request|Response|Goal|Result"
+        "|Feedback))' object has no attr",
         to_do=', so look its fields up with ros2 interface show',
     ),
     Case(

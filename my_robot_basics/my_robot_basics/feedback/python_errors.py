@@ -20,6 +20,8 @@ _NAME = re.compile(
 )
 """rcl's message about an invalid name, with a caret under the wrong character one line below."""
 _CHARACTER = re.compile(r"invalid (?:character '(.)' \(|non-printable character )U\+")
+_SIGNS = {'≤': '<=', '≥': '>=', '≠': '!=', '²': '**2', '³': '**3', '·': '*', '⋅': '*'}
+"""Signs of formulas, and what Python has for them."""
 
 
 def with_hint(told: str) -> str:
@@ -43,7 +45,7 @@ def _about_character(character: str | None) -> str:
     """Return which character to type in place of this one; None is an invisible one."""
     if character is None:
         return ', so type that line again: it has a space of another kind, as copied text may have'
-    plain = in_ascii(character)
+    plain = _SIGNS.get(character) or in_ascii(character)
     return f', so write {plain!r} in its place' if plain else ''
 
 
