@@ -104,6 +104,38 @@ def test_a_client_that_publishes_its_own_solution_instead_of_the_response_fails(
         ik.expect_answer(serving, *TARGETS[0])
 
 
+class KeepsTheLatest(IKClient):
+    """Asks for one target after the other; of those that wait, it keeps only the latest."""
+
+    def __init__(self):
+        super().__init__()
+        self.waiting, self.is_busy = None, False
+
+    def ask(self, target):
+        if not self.client.service_is_ready():
+            return
+        if self.is_busy:
+            self.waiting = target
+            return
+        self.is_busy = True
+        super().ask(target)
+
+    def answer(self, response):
+        self.is_busy = False
+        super().answer(response)
+        target, self.waiting = self.waiting, None
+        if target:
+            self.ask(target)
+
+
+@pytest.mark.usefixtures('impatient')
+def test_a_client_that_keeps_only_the_latest_of_its_waiting_targets_is_reported(run):
+    run(KeepsTheLatest)
+    check_asks()
+    with pytest.raises(CheckFailed, match='ask for each target, also for one that comes while'):
+        check_never_blocks()
+
+
 class CountsSlowly(IKClient):
     """A count that its student has slowed down, from ten times a second to once."""
 

@@ -65,7 +65,7 @@ def test_the_last_output_of_a_command_that_ends_is_printed(notebook, capsys, mon
     ('value', 'words'),
     [
         (None, 'expected a command line left, saw nothing of that name: write it in the answer'),
-        (5, 'expected left to be a text, saw int: put quotes'),
+        (5, 'expected left to be a text, saw int: put it in quotes, and no'),
         (f'{START}; touch here', 'left: expected one command line, saw the word ;: write one'),
     ],
 )

@@ -10,6 +10,7 @@ from my_robot_basics.live import exercise, troubles
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
+from arm_interfaces.srv import SolveIK
 from my_robot_basics import live
 
 
@@ -46,6 +47,35 @@ def test_an_exception_inside_a_library_is_reported_with_the_librarys_line():
         troubles.remember('/a', error.with_traceback(error.__traceback__.tb_next))
     assert ', in raw_decode: ' in troubles.last_raised('/a')
     troubles.forget('/a')
+
+
+@pytest.mark.starts
+def test_a_wrong_field_of_a_request_and_of_a_response_is_found():
+    class Server(Node):
+        def __init__(self):
+            super().__init__('server')
+            self.create_service(SolveIK, '/solve_ik', self.solve)
+
+        def solve(self, request, response):
+            response.message = ValueError('too far')
+            return response
+
+    class Asker(Node):
+        def __init__(self):
+            super().__init__('asker')
+            self.client = self.create_client(SolveIK, '/solve_ik')
+            self.create_timer(0.01, self.ask)
+
+        def ask(self):
+            self.client.call_async(SolveIK.Request())
+            self.client.call_async(SolveIK.Request(target=(1.0, 0.5)))
+
+    live.run(Server)
+    live.run(Asker)
+    live.wait_until(lambda: troubles.last_raised('/server') and troubles.last_raised('/asker'))
+    assert troubles.unpublished_field('/server') == ('message', 'string')
+    assert troubles.unpublished_field('/asker') == ('target', 'geometry_msgs/Point')
+    live.stop()
 
 
 @pytest.mark.starts

@@ -15,6 +15,7 @@ from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import stop_reasons
 from my_robot_basics.live.wrong_arguments import how_to_make
+from my_robot_basics.two_link_kinematics import inverse_kinematics
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.trouble import describe_cell_error
 from nbformat.v4 import new_output
@@ -74,6 +75,7 @@ NAMES = {
     **{'FloatingPointRange': FloatingPointRange, 'Asker': Asker},
     **{'Header': Header, 'AskerNode': AskerNode, 'Node': Node, 'Publisher': Publisher},
     **{'Client': Client, 'Duration': Duration},
+    'inverse_kinematics': inverse_kinematics,
     'print_it': lambda message: print(message),
     **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
 }
@@ -120,6 +122,10 @@ def error_of(code, **names):
         ('JointState().position[0] = 1.0', ', so assign the whole list, [one, two], or append to'),
         ('JointState().name[0] = "a"', ', so assign the whole list, [one, two], or append to it'),
         ('JointState(position=0.5)', ', so write a list, in square brackets, if several numbe'),
+        (
+            'math.radians("e")',
+            ', so give a number: a loop over a dict, or unpacking it, gives its',
+        ),
         ('math.radians([1, 2])', ', so convert each number by itself: [radians(angle) for angle '),
         (
             'math.hypot((1, 2))',
@@ -146,6 +152,14 @@ def error_of(code, **names):
         ('Publisher.publish(None)', ''),
         ('Publisher.__new__(Publisher)()', ', so send the message with the method publish of'),
         ('Client.__new__(Client)()', ', so send the request with the method call_async of'),
+        ('Client.__new__(Client).async_send_request', ', so send the request with the method'),
+        ('Client.__new__(Client).wait_for_server', ''),
+        (
+            'Client.call_async(None, target=1)',
+            ', so give it one request, such as SolveIK.Request(',
+        ),
+        ('(lambda: 1)(2)', ', so write a parameter for each of them behind lambda, such as lam'),
+        ('inverse_kinematics(3.0, 1.0)', ', so catch it: call inverse_kinematics after `try`'),
         ('float(Duration(seconds=0.2))', ', so give the number of seconds itself, such as 0.2'),
         (
             'rclpy.logging.get_logger("a").info("%.2f", 1.0)',
@@ -246,6 +260,21 @@ def test_the_status_of_a_rejected_goal_is_explained():
     said = 'KeyError: 0 (line 27, in end: '
     assert 'goal_handle.accepted' in hint_for_exception(f'{said}print(ENDS[f.result().status]))')
     assert 'use a key that' in hint_for_exception(f'{said}print(ENDS[n]))')
+
+
+def test_a_message_whose_class_was_assigned_to_is_explained():
+    class Request(SolveIK.Request):
+        __slots__ = ()
+
+    error = error_of('Request.target = 1\nRequest()', Request=Request)
+    assert 'and restart the kernel' in hint_for_exception(f'{type(error).__name__}: {error}')
+
+
+def test_a_name_without_a_value_is_explained_unless_it_is_counted_up():
+    said = "UnboundLocalError: cannot access local variable 'n' where it is not associated with "
+    said += 'a value (line 12, in solve: '
+    assert ', so give it a value before' in hint_for_exception(f'{said}print(n))')
+    assert hint_for_exception(f'{said}n += 1)') == ''
 
 
 def test_a_loop_over_the_keys_of_a_dict_is_recognised_by_the_students_line():

@@ -79,6 +79,10 @@ class HoldingServer:
         """Whether a response is held back."""
         return bool(self._held)
 
+    def holds_one(self) -> bool:
+        """Whether just one response is held back."""
+        return len(self._held) == 1
+
     def holds_many(self) -> bool:
         """Whether a client repeats its request, and nearly MOST_HELD responses are held back."""
         return len(self._held) >= MOST_HELD // 2

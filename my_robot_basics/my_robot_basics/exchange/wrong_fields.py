@@ -6,6 +6,7 @@ from typing import Any
 
 _ADDRESS = re.compile(r' at 0x[0-9a-f]+')
 _FIELDS = 'get_fields_and_field_types'
+_NONE = '', '', ''
 _BRIEF = Repr()
 _BRIEF.fillvalue = '…'
 _BRIEF.maxstring = _BRIEF.maxother = 60
@@ -20,12 +21,20 @@ def wrong_field(message: Any, type_: type) -> tuple[str, str, str]:
         value = getattr(message, field)
         if _can_serialize(type_(), field, value):
             continue
-        if type(value) is type(getattr(type_(), field)) and hasattr(value, _FIELDS):
+        if type(value) is type(getattr(type_(), field)) and _is_message(value):
             inner, held, type_name = wrong_field(value, type(value))
             if inner:
                 return f'{field}.{inner}', held, type_name
+        for number, each in enumerate(value if isinstance(value, list) else ()):
+            inner, held, type_name = wrong_field(each, type(each)) if _is_message(each) else _NONE
+            if inner:
+                return f'{field}[{number}].{inner}', held, type_name
         return field, _ADDRESS.sub('', _BRIEF.repr(value)), wanted
-    return '', '', ''
+    return _NONE
+
+
+def _is_message(value: object) -> bool:
+    return hasattr(value, _FIELDS)
 
 
 def _can_serialize(message: object, field: str, value: object) -> bool:

@@ -22,8 +22,17 @@ OF_CALLS = (
         to_do=', so give a callback by its name, without parentheses',
     ),
     Case(
-        pattern="'Client' object is not callable",
+        # in C++ it is async_send_request
+        pattern="'Client' object (?:is not callable|has no attribute '(?:async_)?(?:send|call)_)",
         to_do=', so send the request with the method call_async of the client',
+    ),
+    Case(
+        pattern=r'Client\.call(?:_async)?\(\) got an unexpected keyword',
+        to_do=', so give it one request, such as SolveIK.Request(target=point)',
+    ),
+    Case(
+        pattern=r'<lambda>\(\) takes \d+ positional arguments? but',
+        to_do=', so write a parameter for each of them behind lambda, such as lambda future: …',
     ),
     Case(
         pattern="'Publisher' object is not callable",

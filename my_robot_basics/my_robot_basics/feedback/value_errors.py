@@ -23,4 +23,26 @@ OF_VALUES = (
         pattern="'Parameter' object is not (?:subscriptable|iterable)",
         to_do=", so get its value: self.get_parameter('…').value",
     ),
+    Case(
+        pattern='must be real number, not str',
+        to_do=', so give a number: a loop over a dict, or unpacking it, gives its keys, which are '
+        'texts here, and not its values',
+    ),
+    Case(
+        # a field was assigned to the class, which spoils all its objects
+        pattern=r"'[A-Z]\w*' object attribute '\w+' is read-only",
+        to_do=', so make an object of the class with parentheses, such as JointState(), and '
+        'restart the kernel: an assignment has changed the class itself',
+    ),
+    Case(
+        # count += 1 has another reason
+        pattern=r"local variable '(\w+)' where it is not associated(?!.*\b\1 ?[-+*/]=)",
+        to_do=', so give it a value before this line in each case, or return earlier, such as at '
+        'the end of `except`',
+    ),
+    Case(
+        pattern='m from the base, too (?:far|near)',
+        to_do=', so catch it: call inverse_kinematics after `try`, and write after '
+        '`except ValueError` what happens then',
+    ),
 )

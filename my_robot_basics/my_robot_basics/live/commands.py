@@ -78,7 +78,10 @@ def _read(name: str, executable: str) -> command_line.CommandLine:
             'cell, and run the cell'
         )
     if type(text) is not str:
-        raise NotRunnable(f'expected {name} to be a text, saw {type(text).__name__}: put quotes')
+        raise NotRunnable(
+            f'expected {name} to be a text, saw {type(text).__name__}: put it in quotes, and no '
+            'comma behind them'
+        )
     try:
         return command_line.parse(text, package=_PACKAGE, executable=executable)
     except command_line.BadCommandLine as error:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from rclpy.client import Client
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 
@@ -73,7 +74,7 @@ def last_raised(node_name: str) -> str:
 
 
 def unpublished_field(node_name: str) -> tuple[str, str]:
-    """Return the field that kept the node from publishing, and its type, for its last exception.
+    """Return the field that kept the node from sending, and its type, for its last exception.
 
     If it gave rclpy a wrong object instead of a request or goal: '', and how to make one.
     """
@@ -120,13 +121,23 @@ def _line(frame: traceback.FrameSummary) -> str:
 def _unpublished(error: BaseException) -> tuple[str, str] | None:
     """Return the field that could not be serialized, and its type; None for other errors."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
-        publisher, message = (frame.f_locals.get(name) for name in ('self', 'msg'))
-        if isinstance(publisher, Publisher):
-            type_: Any = publisher.msg_type
-            if isinstance(message, type_):
-                path, _, type_name = wrong_field(message, type_)
-                return (path, type_name) if path else None
+        message, type_ = _sent(frame.f_locals)
+        if type_ is not None and isinstance(message, type_):
+            path, _, type_name = wrong_field(message, type_)
+            return (path, type_name) if path else None
     return None
+
+
+def _sent(names: dict[str, Any]) -> tuple[Any, Any]:
+    """Return what one of rclpy's functions with these local variables sends, and its type."""
+    match names.get('self'):
+        case Publisher():
+            return names.get('msg'), names['self'].msg_type
+        case Service():
+            return names.get('response'), names['self'].srv_type.Response
+        case Client():
+            return names.get('request'), names['self'].srv_type.Request
+    return None, None
 
 
 def _service(error: BaseException) -> str:

@@ -14,6 +14,8 @@ _EXPANDED = '$`'
 """Characters with which a shell's expansions begin."""
 _PLACE = re.compile(r'\{\w+\}')
 """A replacement field of an f-string: the text lacks its f."""
+_WIDE = {'：': ':', '＝': '='}
+"""Characters of a Chinese keyboard, which look like those of a rule or parameter."""
 MOST_CHARACTERS = 2_000
 
 
@@ -55,6 +57,10 @@ def parse(text: str, *, package: str, executable: str) -> CommandLine:
     if found := _PLACE.findall(text):
         hint = 'put an f before the quotation mark: Python then puts the value there'
         raise BadCommandLine(f'{found[0]} itself', hint)
+    if wide := [character for character in text if character in _WIDE]:
+        strange, plain = wide[0], _WIDE[wide[0]]
+        hint = f'write {plain} in its place, which is half as wide'
+        raise BadCommandLine(f'a full-width {strange}', hint)
     if '\n' in text:
         raise BadCommandLine('several lines', 'write one line, or end each but the last with \\')
     if expanded := [character for character in text if character in _EXPANDED]:
