@@ -1,3 +1,4 @@
+import contextlib
 import os
 import time
 from datetime import UTC, datetime, timedelta, timezone
@@ -7,6 +8,7 @@ from course_maker import TOY, make_course
 
 from grader.__main__ import main
 from grader.common.argument_values import local_time
+from grader.storage import due_dates
 from grader.storage.deadlines import FILE, deadlines
 
 
@@ -84,6 +86,31 @@ def test_setting_a_date_keeps_the_rest_of_the_file_as_written(course):
         '# agreed with the dean\n[late]\nper_day = 0.10  # 10 %\n\n[due]\n'
         f'{TOY} = 2026-01-11T23:59:00+08:00\n'
     )
+
+
+def test_a_file_that_notepad_has_written_is_read_and_changed(course):
+    course.gradebook.mkdir()
+    (course.gradebook / FILE).write_text('\ufeff# ours\n', encoding='utf-8')
+    assert due(course, TOY, '2026-11-30') == 0
+    assert TOY in deadlines(course.gradebook).due
+    assert '# ours' in (course.gradebook / FILE).read_text(encoding='utf-8')
+
+
+def test_a_date_that_another_process_sets_meanwhile_stays(course, monkeypatch):
+    lock = due_dates.gradebook_lock
+
+    @contextlib.contextmanager
+    def lock_of_the_second(gradebook):
+        monkeypatch.setattr(due_dates, 'gradebook_lock', lock)
+        assert due(course, TOY, '2026-12-01', '--student', 'ada') == 0
+        with lock(gradebook):
+            yield
+
+    assert due(course, TOY, '2026-11-29') == 0
+    monkeypatch.setattr(due_dates, 'gradebook_lock', lock_of_the_second)
+    assert due(course, TOY, '2026-11-30') == 0
+    found = deadlines(course.gradebook)
+    assert (found.due[TOY].day, [*found.extended]) == (30, [(TOY, 'ada')])
 
 
 @pytest.mark.parametrize(

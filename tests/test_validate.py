@@ -352,6 +352,10 @@ NO_LESSON = {
         '{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}',
         'no exercise',
     ),
+    'another notebook, with a byte order mark': (
+        '\ufeff{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}',
+        'no exercise',
+    ),
 }
 
 
@@ -359,7 +363,7 @@ NO_LESSON = {
 def test_a_file_that_is_not_a_lesson_is_refused_in_a_sentence(tmp_path, text, said):
     path = tmp_path / 'lesson.ipynb'
     if text is not None:
-        path.write_text(text)
+        path.write_text(text, encoding='utf-8')
     run = command(path)
     assert run.returncode == 2
     assert said in run.stderr

@@ -221,7 +221,11 @@ Invoked with: <rclpy.Node object at 0x7f>, <class 'sensor_msgs.msg.JointState'>,
         ),
         (
             ('SyntaxError', "invalid character '²' (U+00B2) (63915088.py, line 3)"),
-            "invalid character '²' (U+00B2) (line 3)",
+            "invalid character '²' (U+00B2) (line 3), so write '**2' in its place",
+        ),
+        (
+            ('SyntaxError', "invalid character '€' (U+20AC) (63915088.py, line 3)"),
+            "invalid character '€' (U+20AC) (line 3)",
         ),
         (
             ('SyntaxError', 'invalid non-printable character U+00A0 (63915088.py, line 3)'),

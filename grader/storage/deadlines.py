@@ -65,7 +65,8 @@ def read_deadlines(
     Raises CourseError if something in it is wrong, such as a name not among `assignments`.
     """
     try:
-        return _parse_deadlines(tomllib.loads(content.decode()), assignments)
+        # Notepad begins a file with a byte order mark
+        return _parse_deadlines(tomllib.loads(content.decode('utf-8-sig')), assignments)
     except (ValueError, _Wrong) as error:
         raise CourseError(
             f'{path}: {error}. Correct it: docs/for-instructors.md, Due dates, has an example.'

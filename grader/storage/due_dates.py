@@ -10,6 +10,7 @@ from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
 from grader.storage.deadlines import FILE, Deadlines, deadlines, read_deadlines
+from grader.storage.lock import gradebook_lock
 
 
 def set_due(
@@ -21,19 +22,19 @@ def set_due(
     if the change is wrong or pointless.
     """
     path = course.gradebook / FILE
-    before = path.read_bytes() if path.exists() else b''
-    now = read_deadlines(before, path, course.assignments())
     course.expect_assignment(assignment)
-    _refuse_pointless(now, assignment, when, student_id)
-    document = tomlkit.parse(before.decode())
-    if student_id is None:
-        _put(document, ('due',), assignment, when)
-    else:
-        _put(document, ('extended', assignment), student_id, when)
-    after = tomlkit.dumps(document).encode()
-    read_deadlines(after, path, course.assignments())
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, after)
+    with gradebook_lock(course.gradebook):  # another process may set another date
+        before = path.read_bytes() if path.exists() else b''
+        now = read_deadlines(before, path, course.assignments())
+        _refuse_pointless(now, assignment, when, student_id)
+        document = tomlkit.parse(before.decode('utf-8-sig'))
+        if student_id is None:
+            _put(document, ('due',), assignment, when)
+        else:
+            _put(document, ('extended', assignment), student_id, when)
+        after = tomlkit.dumps(document).encode()
+        read_deadlines(after, path, course.assignments())
+        write_whole(path, after)
 
 
 def describe_deadlines(course: Course) -> Iterator[str]:

@@ -58,7 +58,8 @@ def read_lesson(path: Path) -> Lesson:
 
 def _read(path: Path) -> NotebookNode:
     try:
-        return nbformat.read(path, as_version=4)
+        # an editor of Windows may have put a byte order mark before it
+        return nbformat.reads(path.read_text(encoding='utf-8-sig'), as_version=4)
     except OSError as error:
         raise CourseError(
             f'{path} cannot be read: {error.strerror}; name the file of a notebook, '
