@@ -31,6 +31,8 @@ def test_numbers_are_read_as_people_write_them(text, numbers):
         ('theta1-65.9, theta2--74.04', ''),
         ("{'elbow_up': (6.5, -7.4)}", ''),
         ('{"elbow_up": [6.5, -7.4]}', ''),
+        ('elbow_up, elbow_down', 'returns a dict'),
+        ('no solution', ''),
         ('', ''),
     ],
 )

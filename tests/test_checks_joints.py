@@ -24,6 +24,25 @@ def test_a_float_array_is_no_pose_and_gets_advice():
     assert joints.why_wrong(wrong, POSE_DEG, others_right=True) == joints.OTHER_TYPE
 
 
+@pytest.mark.parametrize(
+    ('seen', 'advice'),
+    [
+        (NAMES * 2, 'it adds to the names of the call before'),
+        (['joint1', 'joint1', 'joint3'], 'letter for letter'),
+        (['joint_1', 'joint_2'], 'letter for letter'),
+        ([], 'letter for letter'),
+    ],
+)
+def test_names_that_grow_with_each_call_get_another_advice_than_wrong_ones(seen, advice):
+    assert advice in joints.why_names(seen, NAMES)
+
+
+def test_an_empty_list_of_positions_may_come_from_a_field_of_another_name():
+    without = JointState(name=NAMES, positions=[0.5, -1.0])  # rclpy raises nothing
+    assert 'ignores arguments of any other name' in joints.why_off(without.position, POSE_DEG)
+    assert 'one position for each joint into the list' in joints.why_off([0.5], POSE_DEG)
+
+
 def test_joints_agree_in_any_order():
     assert joints.agree(joints.pose(message(0.52360, -1.57080)), RIGHT)
     assert joints.agree(joints.pose(message(-1.5708, 0.5236, name=NAMES[::-1])), RIGHT)

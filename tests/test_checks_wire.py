@@ -17,6 +17,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from IPython.utils.text import SList
 from my_robot_basics.exchange import values, wire
+from my_robot_basics.exchange.wrong_fields import wrong_field
+from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import SetParameters
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -152,6 +155,12 @@ def test_a_message_with_a_wrong_field_is_refused_and_the_field_named(says, field
     wanted = f'sensor_msgs/msg/JointState with a field of a wrong type ({says})'
     with pytest.raises(values.UnsupportedValue, match=re.escape(wanted)):
         values.encode(broken)
+
+
+def test_a_wrong_field_of_one_message_in_a_list_is_named():
+    results = [SetParametersResult(), SetParametersResult(reason=5)]
+    wanted = 'results[1].reason', '5', 'string'
+    assert wrong_field(SetParameters.Response(results=results), SetParameters.Response) == wanted
 
 
 def test_the_error_of_python_is_quoted_if_no_single_field_is_wrong(monkeypatch):

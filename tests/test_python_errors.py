@@ -124,7 +124,7 @@ def error_of(code, **names):
         ('JointState(position=0.5)', ', so write a list, in square brackets, if several numbe'),
         (
             'math.radians("e")',
-            ', so give a number: a loop over a dict, or unpacking it, gives its',
+            ', so give a number, and no text; a loop over a dict, or unpacking',
         ),
         ('math.radians([1, 2])', ', so convert each number by itself: [radians(angle) for angle '),
         (

@@ -43,7 +43,7 @@ BAD = [
     ('rm -rf /', 'rm -rf /: begin with ros2 run my_robot_basics kinematics_publisher'),
     ('ros2 run my_robot_basics hello_node --ros-args', 'hello_node: begin with'),
     ('ros2 run --prefix id my_robot_basics kinematics_publisher --ros-args', 'begin with'),
-    (START + ' --ros-args -r __ns：=/left', 'a full-width ：: write : in its place'),
+    (START + ' --ros-args -r __ns：=/left', "a full-width '：': write ':' in its place"),
     ('!' + START + ' --ros-args', 'begin with'),
     ('A=1 ' + START + ' --ros-args', 'begin with'),
     ('/bin/' + START + ' --ros-args', 'begin with'),

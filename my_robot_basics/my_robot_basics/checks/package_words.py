@@ -11,10 +11,8 @@ from my_robot_basics.feedback.python_errors import hint_for_exception
 
 _NO_CAUSE = re.compile('RuntimeWarning: Enable tracemalloc')
 """Python prints this below the warning about a coroutine that nobody awaits."""
-
-
 _OWN_ERROR = re.compile('(?:Attribute|Name|UnboundLocal|Type|Key|Index|ZeroDivision)Error')
-"""Mistakes in the program, which no Ctrl-C raises."""
+"""Errors that mistakes in a program raise, and Ctrl-C by itself does not."""
 CLEANLY = (
     'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
     'rclpy.try_shutdown() at the end'

@@ -138,8 +138,7 @@ BY_WORDS = (
         to_do=', so go through the list: for each in the_list',
     ),
     Case(
-        pattern=r'(?:Request|Response|Goal|Feedback|Result|Range|(?<!t)State)'
-        r'\.__init__\(\) takes 1',
+        pattern=r'(?:Request|Response|Goal|Feedback|Result|Range)\.__init__\(\) takes 1',
         to_do=', so write each field with its name, such as SolveIK.Request(target=point)',
     ),
     Case(

@@ -25,8 +25,8 @@ OF_VALUES = (
     ),
     Case(
         pattern='must be real number, not str',
-        to_do=', so give a number: a loop over a dict, or unpacking it, gives its keys, which are '
-        'texts here, and not its values',
+        to_do=', so give a number, and no text; a loop over a dict, or unpacking it, gives its '
+        'keys and not its values',
     ),
     Case(
         # a field was assigned to the class, which spoils all its objects

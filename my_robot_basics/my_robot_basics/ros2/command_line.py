@@ -59,8 +59,8 @@ def parse(text: str, *, package: str, executable: str) -> CommandLine:
         raise BadCommandLine(f'{found[0]} itself', hint)
     if wide := [character for character in text if character in _WIDE]:
         strange, plain = wide[0], _WIDE[wide[0]]
-        hint = f'write {plain} in its place, which is half as wide'
-        raise BadCommandLine(f'a full-width {strange}', hint)
+        hint = f'write {plain!r} in its place, which is half as wide'
+        raise BadCommandLine(f'a full-width {strange!r}', hint)
     if '\n' in text:
         raise BadCommandLine('several lines', 'write one line, or end each but the last with \\')
     if expanded := [character for character in text if character in _EXPANDED]:
