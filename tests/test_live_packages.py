@@ -280,6 +280,22 @@ def test_a_failed_or_incomplete_build_is_reported_with_a_remedy(folder, capsys, 
 
 
 @pytest.mark.starts
+def test_an_executable_that_a_failed_build_lacks_is_not_started_for_the_same_reason(
+    folder, capsys
+):
+    changed(make_package(folder), {'resource/greeter': None})
+    live.build_package(PACKAGE)
+    printed(capsys)
+    assert not live.run_executable(PACKAGE, 'greet')
+    assert 'not started: setup.py installs resource/greeter' in printed(capsys)
+    with (
+        pytest.raises(CheckFailed, match=r'saw no process: .* installs resource/greeter'),
+        package_of(PACKAGE).run('greet'),
+    ):
+        pass
+
+
+@pytest.mark.starts
 def test_an_interrupt_ends_a_build_and_the_processes_that_it_started(folder, monkeypatch):
     sleeper = 'import os, time\nopen("{}", "w").write(str(os.getpid()))\ntime.sleep(600)\n'
     pid = folder / 'pid'

@@ -50,7 +50,7 @@ def test_an_exception_inside_a_library_is_reported_with_the_librarys_line():
 
 
 @pytest.mark.starts
-def test_a_wrong_field_of_a_request_and_of_a_response_is_found():
+def test_a_wrong_field_of_a_request_and_of_a_response_is_found(run):
     class Server(Node):
         def __init__(self):
             super().__init__('server')
@@ -70,12 +70,11 @@ def test_a_wrong_field_of_a_request_and_of_a_response_is_found():
             self.client.call_async(SolveIK.Request())
             self.client.call_async(SolveIK.Request(target=(1.0, 0.5)))
 
-    live.run(Server)
-    live.run(Asker)
+    run(Server)
+    run(Asker)
     live.wait_until(lambda: troubles.last_raised('/server') and troubles.last_raised('/asker'))
     assert troubles.unpublished_field('/server') == ('message', 'string')
     assert troubles.unpublished_field('/asker') == ('target', 'geometry_msgs/Point')
-    live.stop()
 
 
 @pytest.mark.starts
