@@ -10,6 +10,7 @@ import time
 import numpy as np
 import pytest
 import rclpy
+from jupyter_client.manager import start_new_kernel
 from my_robot_basics.feedback import rclpy_names
 from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
@@ -28,7 +29,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Header
+from std_msgs.msg import Header, String
 
 from arm_interfaces.action import MoveArm
 from arm_interfaces.srv import SolveIK
@@ -77,9 +78,12 @@ NAMES = {
     **{'Client': Client, 'Duration': Duration},
     'inverse_kinematics': inverse_kinematics,
     'print_it': lambda message: print(message),
-    **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK},
+    **{'JointState': JointState, 'Parameter': Parameter, 'SolveIK': SolveIK, 'String': String},
 }
 """What the lines of code may use."""
+
+
+DEFINE_IT = ', so define it before it is used: as self.… in __init__, or as a method, whose def '
 
 
 def error_of(code, **names):
@@ -225,6 +229,20 @@ def error_of(code, **names):
         ),
         ('x = 5€', ''),
         ('x = (1', ''),
+        ('Asker().createTimer(0.2)', ", so write 'create_timer' in its place"),
+        ('Asker().create_publsher(String)', ", so write 'create_publisher' in its place"),
+        ('Asker().create_subscriber(String)', ", so write 'create_subscription' in its place"),
+        ('Asker().create_timer(0.2)', DEFINE_IT),
+        ('Asker().publisher', DEFINE_IT),
+        ('Asker().tick', DEFINE_IT),
+        ('rclpy.Future().tick', ', so take the answer out of the future with .result()'),
+        ('rclpy.Context().tick', ''),
+        ('None.tick', ''),
+        ('[]["rate_hz"]', ', so go through the list: for each in the_list'),
+        ('[][0.5]', ''),
+        ('from ends import ENDS', ', so check its spelling, and use only modules that the course'),
+        ('import sensor_msgs.msgs', ', so check its spelling, and use only modules that the cou'),
+        ('import rospy', ', so write what the lesson shows: rospy belongs to ROS 1'),
     ],
 )
 def test_an_unclear_error_of_python_is_explained_with_what_to_do(code, why):
@@ -296,6 +314,45 @@ def test_a_loop_over_the_keys_of_a_dict_is_recognised_by_the_students_line():
 )
 def test_errors_at_the_start_of_an_executable_are_explained(said, to_do):
     assert to_do in hint_for_exception(said)
+
+
+BLOCKS = ', so let all lines of a block begin with equally many spaces, four more than the '
+
+
+@pytest.fixture(scope='module')
+def kernel():
+    manager, client = start_new_kernel(kernel_name='python3')
+    yield client
+    client.stop_channels()
+    manager.shutdown_kernel(now=True)
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    ('code', 'line', 'why'),
+    [
+        ('if x =< 2:\n    pass', '(line 1: if x =< 2:)', ', so write <= or >=, with the equals'),
+        ('x = 0\nx++', '(line 2: x++)', ', so write += 1 or -= 1 to count'),
+        ('if a && b:\n    pass', '(line 1: if a && b:)', ', so write the words `and`, `or` and'),
+        ('if !ready:\n    pass', '(line 1: if !ready:)', ', so write the words `and`, `or` and '),
+        (
+            'if a:\n    pass\nelse if b:\n    pass',
+            '(line 3: else if b:)',
+            ', so write elif in place of else if',
+        ),
+        ('  x = 1\n y = 2', '(line 1: x = 1)', BLOCKS),
+        ('def f(self):\nx = 1', '(line 2: x = 1)', BLOCKS),
+        ('if a:\n    x = 1\n  y = 2', '(line 3: y = 2)', BLOCKS),
+        ('print(f(1)', '(line 1: print(f(1))', ''),
+        ('def f()\n    pass', '(line 1: def f())', ''),
+    ],
+)
+def test_code_that_python_cannot_parse_is_shown_and_explained(code, line, why, kernel):
+    said = kernel.execute_interactive(code, output_hook=lambda message: None)['content']
+    error = new_output('error', **{key: said[key] for key in ('ename', 'evalue', 'traceback')})
+    told = describe_cell_error('a', CellRun(error=error))
+    assert re.fullmatch(rf'your cell `a` stopped with \w+Error: .*{re.escape(line)}(.*)', told)
+    assert (why in told) if why else told.endswith(line)
 
 
 def test_an_exhausted_iterator_in_a_coroutine_is_explained():

@@ -220,6 +220,11 @@ OF_STUDENTS = {
     "your cell `a` stopped with SyntaxError: expected ':' (line 15)": (
         "你的单元格 `a` 停止了：SyntaxError: expected ':'（第 15 行）"
     ),
+    'your cell `a` stopped with SyntaxError: invalid syntax (line 1: if a, b && c:), so write the '
+    'words `and`, `or` and `not`': (
+        '你的单元格 `a` 停止了：SyntaxError: invalid syntax (line 1: if a, b && c:)，'
+        '请写单词 `and`、`or` 和 `not`'
+    ),
     'your cell `a` stopped with IndentationError: expected an indented block after function '
     'definition on line 1 (line 2)': (
         '你的单元格 `a` 停止了：IndentationError: expected an indented block after function '

@@ -205,7 +205,8 @@ Invoked with: <rclpy.Node object at 0x7f>, <class 'sensor_msgs.msg.JointState'>,
         (('SyntaxError', "expected ':' (63915088.py, line 15)"), "expected ':' (line 15)"),
         (
             ('IndentationError', 'unindent does not match (<tokenize>, line 5)'),
-            'unindent does not match (line 5)',
+            'unindent does not match (line 5), so let all lines of a block begin with equally '
+            'many spaces, four more than the line above the block',
         ),
         (('SyntaxError', 'no end (<string>, line 1)'), 'SyntaxError: no end (line 1)'),
         (('SyntaxError', 'no end (<ipython-input-3-a1>, line 1)'), 'SyntaxError: no end (line 1)'),

@@ -134,7 +134,7 @@ BY_WORDS = (
         to_do=', so call it, with parentheses behind its name',
     ),
     Case(
-        pattern="'list' object has no attribute",
+        pattern="'list' object has no attribute|list indices must be integers or slices, not str",
         to_do=', so go through the list: for each in the_list',
     ),
     Case(

@@ -32,4 +32,9 @@ MOVED = (
         pattern="'Time' object has no attribute 'to_msg'",
         to_do=', so leave out .to_msg(): this time is a message already',
     ),
+    Case(
+        pattern=r"No module named '[\w.]+'",
+        to_do=', so check its spelling, and use only modules that the course installs; one that '
+        'lies beside your own is imported from its package: from my_package.ends import ENDS',
+    ),
 )

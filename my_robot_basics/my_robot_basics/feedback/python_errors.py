@@ -7,12 +7,14 @@ from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
 from my_robot_basics.feedback.characters import in_ascii
 from my_robot_basics.feedback.error_words import BY_WORDS
+from my_robot_basics.feedback.misspelled import hint_for_missing
 from my_robot_basics.feedback.moved_names import MOVED
+from my_robot_basics.feedback.syntax_errors import OF_SYNTAX
 from my_robot_basics.feedback.value_errors import OF_VALUES
 
 _BY_WORDS = tuple(
     (re.compile(words), clause)
-    for words, clause in (*OF_ACTIONS, *BY_WORDS, *MOVED, *OF_CALLS, *OF_VALUES)
+    for words, clause in (*OF_SYNTAX, *OF_ACTIONS, *BY_WORDS, *MOVED, *OF_CALLS, *OF_VALUES)
 )
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
@@ -38,7 +40,8 @@ def hint_for_exception(said: str) -> str:
         return _about_character(found[1])
     if found := _NAME.search(said):
         return _about_name(found['name'], is_node=found['kind'] == 'node')
-    return next((clause for words, clause in _BY_WORDS if words.search(said)), '')
+    by_words = (clause for words, clause in _BY_WORDS if words.search(said))
+    return next(by_words, '') or hint_for_missing(said)
 
 
 def _about_character(character: str | None) -> str:

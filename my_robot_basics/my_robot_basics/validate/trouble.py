@@ -10,13 +10,17 @@ from my_robot_basics.validate.text import printable, shorten
 
 TROUBLE = 'your cell '
 """Notes about errors in the student's cells begin with this."""
-_TEMPORARY_FILE = re.compile(r'\((<(ipython-input|tokenize|string)[^>]*>|\d+\.py), (?=line \d+\))')
+_TEMPORARY_FILE = re.compile(
+    r'\((?:<(?:ipython-input|tokenize|string)[^>]*>|\d+\.py), (line \d+)\)'
+)
 """The file name of a cell in a SyntaxError, which means nothing to a student."""
 _COLOURS = re.compile(r'\x1b\[[\d;]*m')
 _OWN_LINE = re.compile(
     r'^Cell In\[\d+\], line (\d+).*?^-*> ?\1 +(\S[^\n]*)$', re.MULTILINE | re.DOTALL
 )
 """A frame of the notebook's own code in IPython's traceback: line number and code."""
+_POINTED_AT = re.compile(r'^ *(\S[^\n]*)\n *\^', re.MULTILINE)
+"""A line of code in a traceback with a caret below it."""
 
 
 def describe_cell_error(name: str, run: CellRun) -> str | None:
@@ -35,7 +39,10 @@ def describe_cell_error(name: str, run: CellRun) -> str | None:
         )
     if run.error is not None:
         what = without_signatures(run.error.evalue) or _own_line(run.error.traceback)
-        said = _TEMPORARY_FILE.sub('(', f'{run.error.ename}: {what}').rstrip(': ')
+        line = _unparsed_line(run.error.traceback)
+        said = _TEMPORARY_FILE.sub(
+            lambda found: f'({found[1]}{line})', f'{run.error.ename}: {what}'
+        ).rstrip(': ')
         return with_hint(f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}')
     return None
 
@@ -45,3 +52,9 @@ def _own_line(traceback: list[str]) -> str:
     lines = _OWN_LINE.findall(_COLOURS.sub('', '\n'.join(traceback)))
     number, code = lines[-1] if lines else ('', 'raise')
     return '' if code.startswith('raise') else f'line {number}: {code}'
+
+
+def _unparsed_line(traceback: list[str]) -> str:
+    """Return ': ' and the line that Python could not parse; '' if the traceback shows none."""
+    lines = _POINTED_AT.findall(_COLOURS.sub('', '\n'.join(traceback)))
+    return f': {lines[-1]}' if lines else ''

@@ -1,0 +1,46 @@
+"""Hints for an attribute that an object does not have: another spelling, or a definition."""
+
+import difflib
+import re
+
+from my_robot_basics.feedback.rclpy_names import CLASSES, STRUCTURES
+
+METHODS = (
+    *('create_publisher', 'create_subscription', 'create_timer', 'create_client'),
+    *('create_service', 'get_logger', 'declare_parameter', 'get_parameter', 'set_parameters'),
+    *('add_on_set_parameters_callback', 'destroy_node', 'call_async', 'wait_for_service'),
+    *('service_is_ready', 'wait_for_server', 'send_goal_async', 'add_done_callback'),
+    *('get_result_async', 'cancel_goal_async', 'publish_feedback', 'is_cancel_requested'),
+    *('spin_once', 'spin_until_future_complete', 'add_node', 'remove_node', 'create_node'),
+)
+"""Methods and functions of rclpy that the lessons use, and whose names have several words."""
+_OTHER_WORDS = {'createsubscriber': 'create_subscription', 'createserver': 'create_service'}
+"""Names with another word in them, without their underscores."""
+_ALIKE = 0.88
+"""How alike two names are, at least, if one is a misspelling of the other."""
+_MISSING = re.compile(r"has no attribute '(\w+)'")
+_OF_A_STUDENT = re.compile(rf"'(?!(?:{CLASSES}|{STRUCTURES})')[A-Z]\w*' object has no attribute")
+"""What Python says of an object whose class is a student's own."""
+
+
+def hint_for_missing(said: str) -> str:
+    """Return what to write in place of an attribute that is missing, or where to define it."""
+    found = _MISSING.search(said)
+    if found is None:
+        return ''
+    if method := _spell(found[1]):
+        return f', so write {method!r} in its place'
+    if _OF_A_STUDENT.search(said):
+        return (
+            ', so define it before it is used: as self.… in __init__, or as a method, whose def '
+            'begins as far to the right as that of __init__'
+        )
+    return ''
+
+
+def _spell(name: str) -> str:
+    """Return the method of METHODS that is meant by a name; '' for none, and for itself."""
+    by_letters = {each.replace('_', ''): each for each in METHODS} | _OTHER_WORDS
+    plain = name.replace('_', '').casefold()
+    alike = difflib.get_close_matches(plain, by_letters, n=1, cutoff=_ALIKE)
+    return by_letters[alike[0]] if alike and name not in METHODS else ''

@@ -1,0 +1,21 @@
+"""Hints for code that Python cannot parse, often as in C++; as in error_words."""
+
+from my_robot_basics.feedback.error_words import Case
+
+_AT = r'SyntaxError: .*?\(line \d+: '
+"""The text that comes before the student's line, see `validate.trouble`."""
+
+OF_SYNTAX = (
+    Case(pattern=rf'{_AT}.*(?:=<|=>)', to_do=', so write <= or >=, with the equals sign last'),
+    Case(
+        pattern=rf'{_AT}.*(?:&&|\|\||!\s*[\w(])',
+        to_do=', so write the words `and`, `or` and `not`',
+    ),
+    Case(pattern=rf'{_AT}.*(?:\+\+|--)', to_do=', so write += 1 or -= 1 to count'),
+    Case(pattern=rf'{_AT}else if ', to_do=', so write elif in place of else if'),
+    Case(
+        pattern='(?:IndentationError|TabError): ',
+        to_do=', so let all lines of a block begin with equally many spaces, four more than the '
+        'line above the block',
+    ),
+)
