@@ -117,7 +117,7 @@ def test_a_check_that_is_all_hidden_is_not_called_passed(tmp_path):
 BROKEN = {
     'a syntax error': (
         {'to_joint_state': 'def to_joint_state(:\n    pass'},
-        'stopped with SyntaxError: invalid syntax (line 1)',
+        'stopped with SyntaxError: invalid syntax (line 1: def to_joint_state(:',
     ),
     'one that ends the kernel': ({'to_joint_state': 'import os; os._exit(0)'}, 'ended the kernel'),
     'one that calls exit': ({'to_joint_state': 'exit()'}, 'ended the kernel: it calls exit()'),

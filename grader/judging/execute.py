@@ -13,6 +13,7 @@ from my_robot_basics.validate.cells import KEY, grade_id, role
 from my_robot_basics.validate.exercises import Exercise, find_exercises
 from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
 from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
+from my_robot_basics.validate.side_by_side import join_judged, split_exercise
 from my_robot_basics.validate.together import gather_or_cancel
 from my_robot_basics.validate.verdict import Verdict, fail_all_checks, write_verdict
 from nbformat import NotebookNode
@@ -23,8 +24,8 @@ from grader.kernels.isolation import require_isolation
 from grader.kernels.rooms import GradingRooms
 
 SIDE_BY_SIDE = 2
-"""Exercises of a notebook that run at a time, if this process grades no other notebook: they
-wait more than they work. If it grades several, the notebooks run at a time instead."""
+"""Exercises of a notebook, or parts of them, that run at a time, if this process grades no other
+notebook: they wait more than they work. If it grades several, notebooks run at a time instead."""
 _under_way = 0
 OUTPUT_CHARACTERS = 400
 """What each output counts in addition to its text, so that some 8,000 small ones are kept."""
@@ -138,10 +139,11 @@ async def _execute(work: _NotebookRun) -> list[Verdict]:
     verdicts = []
     with _count_running() as others:
         places = asyncio.Semaphore(1 if others else SIDE_BY_SIDE)
-        exercises = find_exercises(work.notebook)
-        in_order = await gather_or_cancel(
-            *(_judge(work, exercise, places) for exercise in exercises)
-        )
+        exercises = [
+            (exercise,) if others else split_exercise(work.notebook, exercise)
+            for exercise in find_exercises(work.notebook)
+        ]
+        in_order = await gather_or_cancel(*(_judge(work, parts, places) for parts in exercises))
     for judged in in_order:
         for index, run in judged.runs.items():
             work.notebook.cells[index].outputs = work.space.fit(run.outputs)
@@ -150,11 +152,14 @@ async def _execute(work: _NotebookRun) -> list[Verdict]:
 
 
 async def _judge(
-    work: _NotebookRun, exercise: Exercise, places: asyncio.Semaphore
+    work: _NotebookRun, parts: Sequence[Exercise], places: asyncio.Semaphore
 ) -> JudgedExercise:
-    async with places:
-        rooms = partial(work.rooms, [])
-        return await judge_exercise(work.notebook, exercise, rooms, work.budget)
+    async def judge(part: Exercise) -> JudgedExercise:
+        async with places:
+            rooms = partial(work.rooms, [])
+            return await judge_exercise(work.notebook, part, rooms, work.budget)
+
+    return join_judged(await gather_or_cancel(*map(judge, parts)))
 
 
 @contextmanager

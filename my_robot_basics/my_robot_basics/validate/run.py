@@ -20,10 +20,12 @@ from my_robot_basics.validate.passed_answers import answer_of
 from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
 from my_robot_basics.validate.rooms import LocalRooms, Say
 from my_robot_basics.validate.short_budget import ShortBudget
+from my_robot_basics.validate.side_by_side import join_judged, split_exercise
 from my_robot_basics.validate.together import gather_or_cancel
 
 SIDE_BY_SIDE = 2
-"""How many exercises run at a time: most of their time is waiting, except in endless loops."""
+"""How many exercises, or parts of them, run at a time: most of their time is waiting, except in
+endless loops."""
 
 
 async def validate(
@@ -74,21 +76,23 @@ class _Run:
     """Tasks that end kernels which are no longer needed."""
 
     async def part(self, exercise: Exercise) -> ExerciseFeedback:
-        """Wait for a free place, then judge an exercise by the checks that can be run."""
-        judged = JudgedExercise({}, {})
+        """Judge an exercise by the checks that can be run, as soon as places are free."""
         runnable = tuple(i for i in exercise.grades if _can_run(self.lesson, i))
-        answer = ''
+        parts = split_exercise(self.lesson.notebook, replace(exercise, grades=runnable))
+        done = await gather_or_cancel(
+            *(self._judge(exercise, part) for part in parts if part.grades)
+        )
+        answers = {answer for answer, _ in done}
+        judged = _part(self.lesson, exercise, join_judged([each for _, each in done]))
+        return replace(judged, answer=answers.pop() if len(answers) == 1 else '')
+
+    async def _judge(self, exercise: Exercise, part: Exercise) -> tuple[str, JudgedExercise]:
+        """Wait for a free place, then judge a part of an exercise; return the answer, too."""
         async with self.places:
-            if runnable:
-                # before the checks: a package may be edited while they run
-                answer = answer_of(self.lesson.notebook, exercise, self.folder)
-                judged = await judge_exercise(
-                    self.lesson.notebook,
-                    replace(exercise, grades=runnable),
-                    partial(self._rooms, exercise),
-                    self.budget,
-                )
-        return replace(_part(self.lesson, exercise, judged), answer=answer)
+            # before the checks: a package may be edited while they run
+            answer = answer_of(self.lesson.notebook, exercise, self.folder)
+            rooms = partial(self._rooms, exercise)
+            return answer, await judge_exercise(self.lesson.notebook, part, rooms, self.budget)
 
     def _rooms(self, exercise: Exercise) -> LocalRooms:
         rooms = self.make_rooms()
