@@ -288,6 +288,11 @@ def test_a_message_whose_class_was_assigned_to_is_explained():
     assert 'and restart the kernel' in hint_for_exception(f'{type(error).__name__}: {error}')
 
 
+def test_an_unknown_name_in_a_callback_is_explained():
+    said = "NameError: name 'math' is not defined (line 8, in f: return math.pi)"
+    assert hint_for_exception(said).startswith(', so import or define it first')
+
+
 def test_a_name_without_a_value_is_explained_unless_it_is_counted_up():
     said = "UnboundLocalError: cannot access local variable 'n' where it is not associated with "
     said += 'a value (line 12, in solve: '

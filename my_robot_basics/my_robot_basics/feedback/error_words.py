@@ -75,7 +75,7 @@ BY_WORDS = (
         to_do=', so write True, False or None with a capital letter',
     ),
     Case(
-        pattern=r"name '(?!(?:self|rospy)')\w+' is not defined$",
+        pattern=r"name '(?!(?:self|rospy)')\w+' is not defined(?: \(line |$)",
         to_do=', so import or define it first, or put it in quotes if it is a text',
     ),
     Case(
@@ -171,7 +171,7 @@ BY_WORDS = (
     Case(
         pattern=rf'\b(?!(?:{CLASSES})\b)\w+\.(?!__)\w+\(\) takes \d+ positional arguments? but',
         to_do=', so write a parameter for each of them into its def, such as (self, request, '
-        'response) for a service, and (self, message) for a subscription',
+        'response) for a service, (self, message) for a subscription, and (self) for a timer',
     ),
     Case(
         pattern=r'callback should be either be callable',
