@@ -4,7 +4,7 @@ import asyncio
 from dataclasses import replace
 
 import pytest
-from answered import answered
+from answered import answered, read
 from fake_rooms import FakeRooms, ended
 from my_robot_basics.validate import run
 from my_robot_basics.validate.cells import grade_id
@@ -19,6 +19,13 @@ from grader.judging import execute as module
 
 def names(notebook, exercise):
     return [grade_id(notebook.cells[index]) for index in exercise.grades]
+
+
+def test_our_lesson_is_divided_in_both_versions():
+    for folder in 'solutions', 'notebooks':
+        notebook = read(folder, LESSON)
+        [exercise] = find_exercises(notebook)
+        assert len(split_exercise(notebook, exercise)) == 2
 
 
 def test_the_last_check_of_a_package_is_a_part_of_its_own():
@@ -46,6 +53,19 @@ def test_a_check_that_reads_a_name_of_an_earlier_one_is_not_a_part_of_its_own():
     assert split_exercise(notebook, exercise) == (exercise,)
     own = package_lesson(builds='greeter = 1', runs='greeter = 2; print(greeter)')
     assert len(split_exercise(own, exercise)) == 2
+
+
+@pytest.mark.parametrize(
+    'checks',
+    [
+        {'builds': 'from math import *', 'runs': 'print(pi)'},
+        {'builds': 'greeter = 1', 'runs': "print(globals()['greeter'])"},
+    ],
+)
+def test_a_check_that_may_read_such_a_name_is_not_a_part_of_its_own(checks):
+    notebook = package_lesson(**checks)
+    [exercise] = find_exercises(notebook)
+    assert split_exercise(notebook, exercise) == (exercise,)
 
 
 def test_results_are_joined_in_the_order_of_the_checks_and_the_first_run_counts():

@@ -206,7 +206,7 @@ Invoked with: <rclpy.Node object at 0x7f>, <class 'sensor_msgs.msg.JointState'>,
         (
             ('IndentationError', 'unindent does not match (<tokenize>, line 5)'),
             'unindent does not match (line 5), so let all lines of a block begin with equally '
-            'many spaces, four more than the line above the block',
+            'many spaces',
         ),
         (('SyntaxError', 'no end (<string>, line 1)'), 'SyntaxError: no end (line 1)'),
         (('SyntaxError', 'no end (<ipython-input-3-a1>, line 1)'), 'SyntaxError: no end (line 1)'),

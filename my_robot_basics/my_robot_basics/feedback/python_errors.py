@@ -7,7 +7,7 @@ from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
 from my_robot_basics.feedback.characters import in_ascii
 from my_robot_basics.feedback.error_words import BY_WORDS
-from my_robot_basics.feedback.misspelled import hint_for_missing
+from my_robot_basics.feedback.missing_attributes import hint_for_missing
 from my_robot_basics.feedback.moved_names import MOVED
 from my_robot_basics.feedback.syntax_errors import OF_SYNTAX
 from my_robot_basics.feedback.value_errors import OF_VALUES

@@ -15,9 +15,3 @@ CLASSES = (
     '|Parameter|Action(?:Client|Server)|(?:Client|Server)GoalHandle|Random'
 )
 """Classes whose methods are not a student's; `random.uniform` is a method of Random."""
-STRUCTURES = (
-    r'NoneType|Context|QoSProfile|Rate|\w*Executor|\w*CallbackGroup|\w*Parameters?Result'
-    r'|Parameter\w+|\w+Range|Goal(?:Info|Status)|Header|Point|String|Int32|JointState|Twist|Task'
-    r'|\w+_(?:Request|Response|Goal|Result|Feedback)'
-)
-"""Other classes of rclpy and of messages, whose attributes a student cannot add."""

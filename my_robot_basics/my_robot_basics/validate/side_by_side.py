@@ -15,13 +15,16 @@ def split_exercise(notebook: NotebookNode, exercise: Exercise) -> tuple[Exercise
 
     Its checks start processes of their own and mostly wait for them, so that half the time is
     worth a second build. Another exercise is returned as it is, and so is one whose last check
-    reads a name that an earlier check binds.
+    reads, or may read, a name that an earlier check binds.
     """
-    *first, last = exercise.grades or (-1,)
-    if not exercise.packages or not first:
+    if not exercise.packages or len(exercise.grades) < 2:
         return (exercise,)
-    bound = [names_of(notebook.cells[index].source).bound for index in first]
-    if not names_of(notebook.cells[last].source).needed.isdisjoint(set().union(*bound)):
+    *first, last = exercise.grades
+    earlier = [names_of(notebook.cells[index].source) for index in first]
+    bound = set().union(*(names.bound for names in earlier))
+    own = names_of(notebook.cells[last].source)
+    is_open = own.needs_more or any(names.binds_more for names in earlier)
+    if is_open or not own.needed.isdisjoint(bound):
         return (exercise,)
     return replace(exercise, grades=tuple(first)), replace(exercise, grades=(last,))
 

@@ -10,6 +10,8 @@ from my_robot_basics.validate.text import printable, shorten
 
 TROUBLE = 'your cell '
 """Notes about errors in the student's cells begin with this."""
+MOST_OF_A_LINE = 120
+"""How many characters of a line that Python cannot parse are quoted."""
 _TEMPORARY_FILE = re.compile(
     r'\((?:<(?:ipython-input|tokenize|string)[^>]*>|\d+\.py), (line \d+)\)'
 )
@@ -41,7 +43,7 @@ def describe_cell_error(name: str, run: CellRun) -> str | None:
         what = without_signatures(run.error.evalue) or _own_line(run.error.traceback)
         line = _unparsed_line(run.error.traceback)
         said = _TEMPORARY_FILE.sub(
-            lambda found: f'({found[1]}{line})', f'{run.error.ename}: {what}'
+            lambda found: f'({found[1]}{line})', f'{run.error.ename}: {what}', count=1
         ).rstrip(': ')
         return with_hint(f'{TROUBLE}`{name}` stopped with {shorten(printable(said), 300)}')
     return None
@@ -57,4 +59,4 @@ def _own_line(traceback: list[str]) -> str:
 def _unparsed_line(traceback: list[str]) -> str:
     """Return ': ' and the line that Python could not parse; '' if the traceback shows none."""
     lines = _POINTED_AT.findall(_COLOURS.sub('', '\n'.join(traceback)))
-    return f': {lines[-1]}' if lines else ''
+    return f': {lines[-1][:MOST_OF_A_LINE]}' if lines else ''

@@ -3,7 +3,7 @@
 import difflib
 import re
 
-from my_robot_basics.feedback.rclpy_names import CLASSES, STRUCTURES
+from my_robot_basics.feedback.rclpy_names import CLASSES
 
 METHODS = (
     *('create_publisher', 'create_subscription', 'create_timer', 'create_client'),
@@ -19,8 +19,8 @@ _OTHER_WORDS = {'createsubscriber': 'create_subscription', 'createserver': 'crea
 _ALIKE = 0.88
 """How alike two names are, at least, if one is a misspelling of the other."""
 _MISSING = re.compile(r"has no attribute '(\w+)'")
-_OF_A_STUDENT = re.compile(rf"'(?!(?:{CLASSES}|{STRUCTURES})')[A-Z]\w*' object has no attribute")
-"""What Python says of an object whose class is a student's own."""
+_MAY_BE_OWN = re.compile(rf"'(?!(?:NoneType|{CLASSES})')[A-Z]\w*' object has no attribute")
+"""What Python says of an object whose class may be a student's own, by its capital letter."""
 
 
 def hint_for_missing(said: str) -> str:
@@ -30,10 +30,11 @@ def hint_for_missing(said: str) -> str:
         return ''
     if method := _spell(found[1]):
         return f', so write {method!r} in its place'
-    if _OF_A_STUDENT.search(said):
+    if _MAY_BE_OWN.search(said):
         return (
-            ', so define it before it is used: as self.… in __init__, or as a method, whose def '
-            'begins as far to the right as that of __init__'
+            ', so check its spelling; in a class of your own, define it before it is used: as '
+            'self.… in __init__, or as a method, whose def begins as far to the right as that of '
+            '__init__'
         )
     return ''
 
