@@ -229,6 +229,7 @@ def error_of(code, **names):
         ('x = 5€', ''),
         ('x = (1', ''),
         ('Asker().createTimer(0.2)', ", so write 'create_timer' in its place"),
+        ('Asker().GetLogger()', ", so write 'get_logger' in its place"),
         ('Asker().create_publsher(String)', ", so write 'create_publisher' in its place"),
         ('Asker().create_subscriber(String)', ", so write 'create_subscription' in its place"),
         ('Asker().create_timer(0.2)', DEFINE_IT),

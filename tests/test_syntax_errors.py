@@ -59,6 +59,14 @@ def test_code_that_python_cannot_parse_is_quoted_and_explained(code, line, why, 
     assert (f'({line}){why}' in told) if why else told.endswith(f'({line})')
 
 
+def test_the_last_line_with_a_caret_is_quoted():
+    traceback = [
+        'Cell In[1], line 1\n    eval("1 +")\n    ^\n  File <string>:1\n    1 +\n       ^'
+    ]
+    told = told_of(ename='SyntaxError', evalue='bad (<string>, line 1)', traceback=traceback)
+    assert told.endswith('bad (line 1: 1 +)')
+
+
 def test_a_long_line_is_quoted_in_part_and_once():
     """A traceback comes from the student's kernel: it may hold anything, of any length."""
     evalue = 'bad (1.py, line 1)'
