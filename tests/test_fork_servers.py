@@ -118,6 +118,49 @@ def test_a_fork_server_writes_bytecode_and_its_kernels_do_not(
         loop.run(closed(sandbox, kernel))
 
 
+HAS_PICTURES = "import sys; print('matplotlib.figure' in sys.modules)"
+
+
+def test_an_idle_server_imports_what_draws_pictures(loop, no_servers):
+    kept = [loop.run(opened())]
+    try:
+        server = server_of(kept[0][1])
+        assert printed(loop, kept[0][1], HAS_PICTURES) == 'False\n'
+        maps = Path(f'/proc/{server.pid}/maps')
+        wait_until(lambda: 'matplotlib/ft2font' in maps.read_text())
+        kept.append(loop.run(opened()))
+        assert server_of(kept[1][1]) == server
+        assert printed(loop, kept[1][1], HAS_PICTURES) == 'True\n'
+        assert server.num_threads() == 1
+    finally:
+        for each in kept:
+            loop.run(closed(*each))
+
+
+def test_a_server_whose_late_import_fails_is_replaced(loop, monkeypatch, tmp_path, no_servers):
+    program = Path(shutil.copytree(fork_servers._PROGRAM, tmp_path / 'forkserver'))
+    with (program / 'imports.py').open('a') as imports:
+        imports.write("\n_PICTURES = ('nothing_of_that_name',)\n")
+    monkeypatch.setattr(fork_servers, '_PROGRAM', program)
+    kept = [loop.run(opened())]
+    try:
+        former = server_of(kept[0][1])
+        wait_until(lambda: not former.is_running() or former.status() == psutil.STATUS_ZOMBIE)
+        kept.append(loop.run(opened()))
+        assert server_of(kept[1][1]) != former
+        assert [printed(loop, kernel, 'print(1)') for _, kernel in kept] == ['1\n', '1\n']
+    finally:
+        for each in kept:
+            loop.run(closed(*each))
+
+
+def wait_until(is_true):
+    deadline = time.monotonic() + 60
+    while not is_true():
+        assert time.monotonic() < deadline, 'a server did not become idle in a minute'
+        time.sleep(0.02)
+
+
 def _held_by_a_server(room):
     code = """
 import json, sys
@@ -125,6 +168,7 @@ folder, room = sys.argv[1:]
 sys.path.insert(0, folder)
 import imports, libc, offline, privilege_drop, single_thread
 imports.import_for(room)
+imports.import_when_idle()
 print(json.dumps([*sys.modules]))
 """
     command = [sys.executable, '-P', '-c', code, fork_servers._PROGRAM, room]

@@ -16,6 +16,7 @@ from grader.report.report import Run, write_report
 from grader.report.statistics import WRITTEN, tally
 from grader.storage.gradebook import store
 from grader.storage.pipeline import make_sanitized_template, make_unanswered, sanitize_restored
+from grader.storage.records import records
 
 ANSWER = 'def double(x):\n    return x + x'
 SCRIPT = '<script>alert("from a student")</script>'
@@ -64,7 +65,7 @@ def test_a_reason_lists_all_its_students_and_the_most_common_one_comes_first(cou
         ),
         graded(course, 'eve', {'double-check': 'gave none in 2 s'}),
     ]
-    first, second = tally(course, rows).reasons
+    first, second = tally(course, rows, records(course)).reasons
     assert first.words == 'expected …, saw …: count again'
     assert first.students == ('ada', 'bob')
     assert first.checks == ('double-hidden', 'double-check')
@@ -112,7 +113,7 @@ def test_each_check_has_the_share_of_scored_students_who_passed(course):
         graded(course, 'bob', {'double-check': 'no'}),
         graded(course, 'eve', {'double-check': '?'}, explained=''),
     ]
-    (toy,) = tally(course, rows).assignments
+    (toy,) = tally(course, rows, records(course)).assignments
     assert [(c.grade_id, c.passed, c.missed, c.waiting, c.rate) for c in toy.checks] == [
         ('double-check', 1, 1, 1, 0.5),
         ('double-hidden', 3, 0, 0, 1.0),
@@ -132,7 +133,7 @@ def test_each_submission_or_check_that_needs_a_person_is_listed_with_its_reason(
         SubmissionOutcome('x.ipynb', '', None, 'a file where a folder was expected'),
         SubmissionOutcome('kim', TOY, None, 'not graded, the grader failed: OSError: no room'),
     ]
-    looks = tally(course, rows).looks
+    looks = tally(course, rows, records(course)).looks
     assert [(each.students, each.checks, each.words) for each in looks if each.checks] == [
         (('bob',), ('double-check',), '?'),
         (('ada',), ('explain',), WRITTEN),
@@ -147,7 +148,7 @@ def test_each_submission_or_check_that_needs_a_person_is_listed_with_its_reason(
 
 def test_submissions_that_wait_for_the_same_reason_share_one_line(course):
     rows = [graded(course, name, {'double-check': '?'}) for name in ('ada', 'bob', 'eve')]
-    broken, written = tally(course, rows).looks
+    broken, written = tally(course, rows, records(course)).looks
     assert (broken.words, broken.students) == ('?', ('ada', 'bob', 'eve'))
     assert (written.words, written.students) == (WRITTEN, ('ada', 'bob', 'eve'))
     facts, html = reported(course, rows)
@@ -162,7 +163,7 @@ def test_the_check_that_most_students_missed_comes_first_with_its_commonest_reas
         graded(course, 'eve', {'double-check': 'b'}),
         graded(course, 'zoe', {}),
     ]
-    counted = tally(course, rows)
+    counted = tally(course, rows, records(course))
     assert [(name, c.grade_id, c.missed) for name, c in counted.hardest] == [
         (TOY, 'double-check', 3),
         (TOY, 'explain', 2),
@@ -184,7 +185,7 @@ def test_a_check_that_a_person_has_scored_waits_no_longer(course):
     with Gradebook(course.db_url) as book:
         book.find_grade('explain', TOY, TOY, 'ada').manual_score = 2.0
         book.db.commit()
-    counted = tally(course, [row])
+    counted = tally(course, [row], records(course))
     assert counted.looks == ()
     assert counted.assignments[0].checks[2].passed == 1
 

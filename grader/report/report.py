@@ -53,11 +53,12 @@ def write_report(
 
     The page is in `language`; report.json, which is for programs, is in English.
     """
-    counted = tally(course, rows)
+    stored = records(course)
+    counted = tally(course, rows, stored)
     now = {row.assignment for row in rows if row.seconds is not None and row.stored}
     similar = find_similar(course, sorted(now))
     facts = _facts(run, rows, counted) | {
-        'totals': _totals(add_up(records(course))),
+        'totals': _totals(add_up(stored)),
         'similar': [_similar(pair) for pair in similar.pairs],
         'not compared': similar.problems,
     }

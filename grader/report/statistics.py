@@ -12,7 +12,7 @@ from grader.course import Course
 from grader.grading import SubmissionOutcome
 from grader.notebook.restore import KEY, NO_ANSWERS, grade_id
 from grader.report.message_groups import CellMessage, Reason, group_messages
-from grader.storage.records import CellScore, graded_notebook, records, verdicts_in
+from grader.storage.records import CellScore, graded_notebook, verdicts_in
 
 WRITTEN = 'a written answer that a person reads'
 
@@ -103,12 +103,13 @@ def _verdicts_of(graded: NotebookNode) -> _VerdictsOfOne:
     return _VerdictsOfOne(ours.get('problem') or '', verdicts_in(graded), lost)
 
 
-def tally(course: Course, rows: Sequence[SubmissionOutcome]) -> Tally:
-    """Compute the statistics of one run's submissions."""
+def tally(course: Course, rows: Sequence[SubmissionOutcome], stored: Iterable[CellScore]) -> Tally:
+    """Compute the statistics of one run's submissions; `stored` has all graded cells."""
     whose = {(row.student_id, row.assignment): row for row in rows if row.stored}
     of_cells = defaultdict(list)
-    for record in records(course, only=whose.keys()):
-        of_cells[record.student_id, record.assignment].append(record)
+    for record in stored:
+        if (record.student_id, record.assignment) in whose:
+            of_cells[record.student_id, record.assignment].append(record)
     said = {each: _verdicts_of(graded_notebook(course, *each)) for each in whose}
     failures = list(_failures(said))
     looks = group_messages(_find_manual_work(rows, of_cells, said))

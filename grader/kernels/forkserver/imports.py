@@ -23,9 +23,6 @@ _BOTH = (
     'IPython.extensions.storemagic',
     'IPython.display',
     'IPython.utils.wildcard',
-    'matplotlib.backends.backend_agg',
-    'matplotlib.figure',
-    'matplotlib.font_manager',
     'numpy.random',  # each kernel seeds it again, see `_forget`
     'pygments.formatters.terminal256',
     'rclpy',
@@ -66,6 +63,12 @@ _ROOMS = {
     ),
 }
 """Packages imported for one room only, with all their modules, in addition to _BOTH."""
+_PICTURES = (
+    'matplotlib.backends.backend_agg',
+    'matplotlib.figure',
+    'matplotlib.font_manager',
+)
+"""A third of the import time, and most kernels draw nothing."""
 
 
 def import_for(room: str) -> None:
@@ -75,6 +78,12 @@ def import_for(room: str) -> None:
     for name in _ROOMS[room]:
         _import_all_of(name)
     _load_type_supports()
+
+
+def import_when_idle() -> None:
+    """Import what only some kernels need. Raises what fails."""
+    for name in _PICTURES:
+        importlib.import_module(name)
 
 
 def _import_all_of(name: str) -> None:

@@ -20,7 +20,7 @@ def become_single_threaded() -> None:
     """
     _leave_threads_behind()
     _unshare_memory()
-    _expect_nothing_shared()
+    expect_nothing_shared()
 
 
 def _leave_threads_behind() -> None:
@@ -66,7 +66,7 @@ def _shared() -> Iterator[tuple[int, int, str, str]]:
             yield start, end, rights, ''.join(path)
 
 
-def _expect_nothing_shared() -> None:
+def expect_nothing_shared() -> None:
     """Raise RuntimeError if a fork would lose a thread, or share memory with other processes.
 
     Read-only mappings of files that each room has anyway are allowed.
