@@ -10,7 +10,7 @@ from my_robot_basics.exchange.endings import RACE, is_clean, why_crashed
 from my_robot_basics.live import executables
 from my_robot_basics.live.install_faults import fault_in_install
 from my_robot_basics.live.package_faults import fault_in_words
-from my_robot_basics.live.package_signals import handles_ctrl_c
+from my_robot_basics.live.package_signals import handles_ctrl_c, waits_in_call
 from my_robot_basics.session import package_files
 from package_maker import NODE, PACKAGE, make_package
 
@@ -194,3 +194,18 @@ def test_code_that_handles_ctrl_c_itself_is_found(tmp_path, line, is_own):
     (folder / 'greeter/more.py').write_text(f'{line}\n')
     assert handles_ctrl_c(folder) is is_own
     assert not handles_ctrl_c(folder / 'nowhere')
+
+
+@pytest.mark.parametrize(
+    ('line', 'waits'),
+    [
+        ('response = self.client.call(request)', True),
+        ('future = self.client.call_async(request)', False),
+        ('recall(request)', False),
+    ],
+)
+def test_code_that_waits_in_call_is_found(tmp_path, line, waits):
+    folder = make_package(tmp_path)
+    (folder / 'greeter/more.py').write_text(f'{line}\n')
+    assert waits_in_call(folder) is waits
+    assert not waits_in_call(folder / 'nowhere')

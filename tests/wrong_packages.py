@@ -339,6 +339,35 @@ WRONG = (
         {'package_runs': r'leave SIGINT to rclpy.init\(\), without signal.signal'},
     ),
     Change(
+        'waits_in_call',
+        swap(
+            PLAYER,
+            ('import rclpy\n', 'import time\n\nimport rclpy\n'),
+            (
+                'import ExternalShutdownException\n',
+                'import ExternalShutdownException, MultiThreadedExecutor\n',
+            ),
+            (
+                'self.wait_for(self.solver.call_async(SolveIK.Request(target=Point(x=x, y=y))))',
+                'self.solver.call(SolveIK.Request(target=Point(x=x, y=y)))',
+            ),
+            (
+                '        rclpy.spin_until_future_complete(self, future)\n'
+                '        if not future.done():\n            raise ExternalShutdownException\n',
+                '        while not future.done():\n            time.sleep(0.01)\n',
+            ),
+            ('    def play(self):\n', '    def play(self):\n        self.begin.cancel()\n'),
+            (
+                '        player.play()\n        rclpy.spin(player)',
+                '        group = rclpy.callback_groups.ReentrantCallbackGroup()\n'
+                '        player.begin = player.create_timer(0.1, player.play, group)\n'
+                '        rclpy.spin(player, MultiThreadedExecutor())',
+            ),
+        ),
+        (1, 0, 4),
+        {'package_runs': r'client\.call\(…\) waits for a response, and after Ctrl-C none comes'},
+    ),
+    Change(
         'declares_no_numbers',
         swap(PLAYER, ("'targets', [1.2, 0.8, 0.9, -0.9]", "'targets', []")),
         (1, 0, 0),

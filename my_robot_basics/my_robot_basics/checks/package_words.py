@@ -67,10 +67,15 @@ def why_not_clean(code: int | None, said: str) -> str:
 
 
 def why_it_goes_on(told: Mapping[str, Any]) -> str:
-    """Advice about a program that goes on after Ctrl-C; `told` is the room's on its handlers."""
+    """Advice about a program that goes on after Ctrl-C; `told` is the room's on its code."""
     if told.get('own') is True:
         return (
             'leave SIGINT to rclpy.init(), without signal.signal and signal_handler_options: '
             'while rclpy.spin waits, no handler of your own is called'
+        )
+    if told.get('calls') is True:
+        return (
+            'client.call(…) waits for a response, and after Ctrl-C none comes: use call_async, '
+            'and await its future in a callback, or rclpy.spin_until_future_complete in main'
         )
     return 'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'

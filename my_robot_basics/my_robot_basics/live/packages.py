@@ -91,7 +91,7 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
 
     'built': the result of the build. 'start', name, arguments: start an executable. 'state',
     number: its exit code, None while it runs, and last output. 'signal', number, name: send that.
-    'handlers': whether its code handles SIGINT itself.
+    'handlers': whether its code handles SIGINT itself, and whether it waits in a client's `call`.
     """
     if verb == 'built':
         return _build_reply(_builds.get(package))
@@ -104,7 +104,11 @@ def answer_check(package: str, verb: str, *args: Any) -> dict[str, Any]:
             return {'problem': _why_not_started(package, error)[:MOST_SAID]}
         return {'number': number}
     if verb == 'handlers':
-        return {'own': package_signals.handles_ctrl_c(packages_folder() / package)}
+        folder = packages_folder() / package
+        return {
+            'own': package_signals.handles_ctrl_c(folder),
+            'calls': package_signals.waits_in_call(folder),
+        }
     number, *rest = args
     if (found := executables.find(number)) is None:
         return {'problem': 'nothing was started under that number'}
