@@ -76,6 +76,6 @@ def why_it_goes_on(told: Mapping[str, Any]) -> str:
     if told.get('calls') is True:
         return (
             'client.call(…) waits for a response, and after Ctrl-C none comes: use call_async, '
-            'and await its future in a callback, or rclpy.spin_until_future_complete in main'
+            'and `await future` in a callback, or rclpy.spin_until_future_complete in main'
         )
     return 'let no callback and no loop go on for long, and do not catch KeyboardInterrupt there'
