@@ -36,10 +36,16 @@ def read(tmp_path):
 
 
 UNREADABLE = {
-    'empty': ('', 'is not JSON'),
+    'empty': ('', 'is empty: save'),
     'binary': (bytes(range(256)), 'is not JSON'),
     'cut short': (notebook_text(CODE)[:-20], 'is not JSON'),
-    'a web page': ('<!DOCTYPE html><html>', 'is not JSON'),
+    'a web page': ('\ufeff\n<!DOCTYPE html><html>', 'is a web page, not a notebook'),
+    'an archive': (b'PK\x03\x04' + bytes(40), 'is a zip archive'),
+    'a merge conflict': (
+        '{\n "cells": [\n<<<<<<< HEAD\n  1\n=======\n  2\n>>>>>>> other\n ]\n}',
+        'has a merge conflict of Git in line 3',
+    ),
+    'only a word of one': ('{\n "a": "<<<<<<< HEAD"\n', 'is not JSON'),
     'nested deeply': ('[' * 100_000, 'is not JSON'),
     'nested deeply, closed': ('[' * 100_000 + ']' * 100_000, 'is not JSON'),
     'UTF-16 without a mark': (notebook_text(CODE).encode('utf-16-be')[:-1], 'is not JSON'),

@@ -25,6 +25,10 @@ MAX_GRADE_ID_CHARACTERS = 128
 """A longer one is not from a lesson, and is dropped."""
 MAX_PICTURES, MAX_PICTURE_NAME_CHARACTERS = 200, 255
 """Pasted pictures of all cells: each is checked whenever the notebook is written."""
+_CONFLICT = re.compile(rb'^<{7} ', re.MULTILINE)
+"""What Git writes above the first of two versions that it can't merge."""
+_SPACE = b'\xef\xbb\xbf \t\r\n'
+"""White space, and the mark that may precede it at the beginning of UTF-8."""
 
 
 def read(path: str) -> dict:
@@ -93,14 +97,34 @@ def _read_json(path: Path) -> object:
         )
     try:
         raw = path.read_bytes()
-        return json.loads(raw)
-    except (ValueError, RecursionError) as error:
-        raise UnreadableSubmission(
-            f'{path.name} is not JSON ({_one_line(error)}): the file is damaged or not a '
-            'notebook. Save it again in JupyterLab and submit that file.'
-        ) from None
     except OSError as error:
         raise UnreadableSubmission(f'{path.name} could not be read: {error.strerror}.') from None
+    try:
+        return json.loads(raw)
+    except (ValueError, RecursionError) as error:
+        raise UnreadableSubmission(_why_no_json(path.name, raw, error)) from None
+
+
+def _why_no_json(name: str, raw: bytes, error: Exception) -> str:
+    if not raw:
+        return f'{name} is empty: save the lesson in JupyterLab and submit it again.'
+    if conflict := _CONFLICT.search(raw):
+        line = raw.count(b'\n', 0, conflict.start()) + 1
+        return (
+            f'{name} has a merge conflict of Git in line {line}: submit one of the two versions '
+            'alone; git checkout takes it, with --ours or --theirs.'
+        )
+    if raw.lstrip(_SPACE)[:1] == b'<':
+        return (
+            f'{name} is a web page, not a notebook: download the notebook itself, in JupyterLab '
+            'with File, Download, and submit that file.'
+        )
+    if raw.startswith(b'PK\x03\x04'):
+        return f'{name} is a zip archive: unpack it, and submit the notebook that is in it.'
+    return (
+        f'{name} is not JSON ({_one_line(error)}): the file is damaged or not a notebook. Save it '
+        'again in JupyterLab and submit that file.'
+    )
 
 
 def _clean_cell(cell: dict) -> dict:
