@@ -20,6 +20,9 @@ def at(tmp_path):
         'ada_02_joint_state.ipynb',
         'ada-02_joint_state.ipynb',
         'ada 02_joint_state (1).ipynb',
+        'ada - Copy of 02_joint_state.ipynb',
+        'Copy of ada - 02_joint_state.ipynb',
+        'Kopie von Copy of ada_02_joint_state.ipynb',
         'ada_02_joint_state/02_joint_state.ipynb',
         'ada/02_joint_state.ipynb',
         'ada/02_joint_state/02_joint_state.ipynb',
@@ -50,7 +53,19 @@ def test_student_and_assignment_are_found_in_the_path_of_a_notebook(path, at):
 
 
 @pytest.mark.parametrize(
-    'name', ['小明', 'Зоя', 'Ada Lovelace', "o'hara", 'a+b', '=cmd()', 'x[1]*', 'نگار\u200cمحمدی']
+    'name',
+    [
+        '小明',
+        'Bob Kopie',
+        'Copy ofer',
+        'Зоя',
+        'Ada Lovelace',
+        "o'hara",
+        'a+b',
+        '=cmd()',
+        'x[1]*',
+        'نگار\u200cمحمدی',
+    ],
 )
 def test_names_from_any_alphabet_are_kept(name, at):
     for path in (f'{name}_02_joint_state.ipynb', f'{name}/02_joint_state.ipynb'):

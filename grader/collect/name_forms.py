@@ -9,6 +9,9 @@ from grader.collect.platforms import label_in
 
 _BETWEEN = '_+- .'
 """Characters that may separate a student's name from an assignment's."""
+_COPY_OF = r'(?:(?:copy of|kopie von|copie de|copia de|copia di) )+'
+_COPY = re.compile(rf'^{_COPY_OF}|(?<= ){_COPY_OF}$', re.IGNORECASE)
+"""What Google Drive writes before the name of a file, or of the student's own copy of it."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,7 @@ class NameForms:
             for assignment in self._known:
                 student = whole.removesuffix(assignment)
                 if student != whole and len(student) > 1 and student[-1] in _BETWEEN:
+                    student = _COPY.sub('', student) or student
                     return AssignmentName(student.rstrip(_BETWEEN) or student[0], assignment)
         return None
 
