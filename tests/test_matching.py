@@ -178,6 +178,54 @@ def test_unreadable_files_matter_and_files_of_other_types_do_not(at):
     ]
 
 
+ALONE = 'no notebook: ask for 03_publisher.ipynb'
+
+
+@pytest.mark.parametrize(
+    'path',
+    [
+        'bob/03_publisher.html',
+        'bob/03_publisher.py',
+        'bob_03_publisher.PDF',
+        'bob - Copy of 03_publisher.docx',
+        'bob/bob_03_publisher (1).htm',
+        'bob.zip/work/03_publisher.txt',
+        'bob_18151_21012_03_publisher-1.html',
+        'Bob_2_assignsubmission_file_/03_publisher.html',
+        'Bob_2_assignsubmission_file_03_publisher.html',
+    ],
+)
+def test_a_lesson_handed_in_as_another_kind_of_file_alone_needs_attention(path, at):
+    _, [left] = match([at(path), at('ada/03_publisher.ipynb')], ASSIGNMENTS)
+    assert left.reason.startswith(ALONE)
+    assert left.needs_attention
+
+
+@pytest.mark.parametrize(
+    ('notebook', 'other'),
+    [
+        ('bob/03_publisher.ipynb', 'bob/03_publisher.html'),
+        ('bob/03_publisher.ipynb', 'bob/export/03_publisher.pdf'),
+        ('bob_03_publisher.ipynb', 'bob_03_publisher.html'),
+        ('bob_18151_21012_03_publisher.ipynb', 'bob_18151_21013_03_publisher-1.html'),
+        ('Bob_2_assignsubmission_file_/03_publisher.ipynb',
+         'Bob_2_assignsubmission_file_/03_publisher.html'),
+        ('bob/03_publisher.ipynb', 'bob/notes.html'),
+    ],
+)  # fmt: skip
+def test_another_kind_of_file_beside_the_notebook_needs_no_attention(notebook, other, at):
+    _, [left] = match([at(notebook), at(other)], ASSIGNMENTS)
+    assert (left.reason, left.needs_attention) == ('neither a notebook nor Python', False)
+
+
+def test_another_lesson_or_another_student_s_notebook_is_no_notebook_for_it(at):
+    others = at('bob/02_joint_state.ipynb'), at('ada_03_publisher.ipynb')
+    _, left = match(
+        [at('bob/03_publisher.html'), at('eve_03_publisher.html'), *others], ASSIGNMENTS
+    )
+    assert [each.reason.startswith(ALONE) for each in left] == [True, True]
+
+
 def test_an_archive_named_homework_does_not_name_a_student(at):
     taken, left = owners(
         at('Ada_1_assignsubmission_file_/homework.zip/03_publisher.ipynb'),

@@ -1,7 +1,7 @@
 """Match notebooks to student, assignment and time, by their paths and names."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from hashlib import sha256
@@ -18,9 +18,8 @@ from grader.collect.package_folders import (
     split_packages,
 )
 from grader.collect.platforms import PlatformLabel
+from grader.collect.untaken import UntakenFile, UntakenReasons
 from grader.collect.uploads import is_wanted
-from grader.common.dates import date_of
-from grader.notebook.submission import SECRET, TIMESTAMP
 
 
 @dataclass(frozen=True)
@@ -44,19 +43,9 @@ class MatchedFile:
     """What the student is told about files that were not taken."""
 
 
-@dataclass(frozen=True)
-class UntakenFile:
-    """A file that was not taken."""
-
-    incoming: Incoming
-    reason: str
-    needs_attention: bool = True
-    """Whether a person should look at it; if not, it would not be graded anyway."""
-
-
 def match(
     found: Sequence[Incoming],
-    assignments: Iterable[str],
+    assignments: Collection[str],
     *,
     packages: Mapping[str, Iterable[str]] | None = None,
     students: Iterable[str] = (),
@@ -75,13 +64,16 @@ def match(
     beside_notebooks = group_by_key(folders)
     rest = [UntakenFile(each, each.problem) for each in found if each.problem]
     beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
+    unwanted = []
     for each in (each for each in found if not each.problem and not is_notebook(each)):
         if is_wanted(each.parts[-1:]):
             beside[each.parts[:-1]][each.parts[-1]] = each
         else:
-            rest.append(UntakenFile(each, 'neither a notebook nor Python', needs_attention=False))
+            unwanted.append(each)
     owners, remarks, problems = find_owners(found, assignments, students)
     rest += [UntakenFile(each, problem) for each, problem in problems.items()]
+    reasons = UntakenReasons(owners, assignments)
+    rest += map(reasons.unwanted, unwanted)
     hand_ins, used, others = [], set[Incoming](), dict[Incoming, str]()
     for notebook, owner in owners.items():
         with_it = find_companions(
@@ -116,7 +108,7 @@ def match(
     uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
     for folder, files in beside.items():
         left = (each for each in files.values() if each not in used and each not in others)
-        rest += [_unused_file(each, in_upload=folder in uploads) for each in left]
+        rest += [reasons.unused(each, in_upload=folder in uploads) for each in left]
     return _sort_hand_ins(hand_ins, rest), rest
 
 
@@ -133,28 +125,6 @@ def _submission_time(
     told = owner.handed_in or with_it.timestamp()
     claimed = notebook.modified if file_times else None
     return max([*with_it.change_times(), *([told] if told else [])], default=claimed)
-
-
-def _unused_file(each: Incoming, *, in_upload: bool) -> UntakenFile:
-    """Return why a file that is beside notebooks does not belong to any of them."""
-    if each.parts[-1] == SECRET:
-        return UntakenFile(
-            each, 'it belongs to the exchange, but to no submission here', needs_attention=False
-        )
-    if each.parts[-1] != TIMESTAMP:
-        return UntakenFile(
-            each,
-            'it is beside no notebook, or beside those of several students',
-            needs_attention=False,
-        )
-    if each.archive or in_upload:
-        where = 'archive' if each.archive else 'upload'
-        return UntakenFile(
-            each, f'its time is not used: a student can write any time into an {where}'
-        )
-    if date_of(each.readable) is None:
-        return UntakenFile(each, 'it holds no date')
-    return UntakenFile(each, 'it is beside no notebook of one student')
 
 
 def _sort_hand_ins(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list[MatchedFile]:

@@ -52,6 +52,12 @@ class NameForms:
                     return AssignmentName(student.rstrip(_BETWEEN) or student[0], assignment)
         return None
 
+    def assignment_in(self, stem: str) -> str:
+        """Return the assignment that a file's name without its ending ends with, or ''."""
+        named = self.parse_assignment_name(stem)
+        plain = re.sub(r'-\d+$', '', stem)
+        return named.assignment if named else plain if plain in self._known else ''
+
     def parse_exchange_name(self, name: str) -> ExchangeName | None:
         """Split STUDENT+ASSIGNMENT+TIME; None if the name has another form."""
         found = self._exchange.fullmatch(name)
