@@ -5,6 +5,7 @@ import pytest
 from course_maker import TOY, answered, executed, submit
 from stand_in import stand_in
 
+from grader.__main__ import main
 from grader.cli.demo import demo
 from grader.common.errors import CourseError
 from grader.course import Course
@@ -22,7 +23,11 @@ WRONG = 'def double(x):\n    return x + 1'
 
 @pytest.fixture
 def course(released, tmp_path, monkeypatch):
-    """A gradebook of its own; no answer is run, the verdict is made from its text."""
+    """A gradebook of its own; no answer is run, the verdict is made from its text.
+
+    A check of an answer with the word `busy` can't decide when it runs first.
+    """
+    undecided = set()
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
@@ -30,6 +35,8 @@ def course(released, tmp_path, monkeypatch):
         if 'crash' in answer:
             raise OSError('no room')
         reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
+        reason = '?' if 'busy' in answer and seed not in undecided else reason
+        undecided.add(seed)
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
         notebook.metadata[KEY]['seed'] = seed
         return Execution(notebook=notebook, verdicts=(), notes=())
@@ -131,6 +138,22 @@ def test_one_student_or_assignment_can_be_selected_for_grading(course):
         find_submissions(course, student_id='zoe', assignment=TOY)
     with pytest.raises(CourseError, match="no assignment '99'"):
         find_submissions(course, assignment='99')
+
+
+@pytest.mark.parametrize('students', [['ada'], ['ada', 'bob']])
+def test_a_check_that_could_not_decide_is_tried_again_by_the_next_run(course, capsys, students):
+    for student in students:
+        submit(course, student, answered(course, f'{RIGHT}  # busy', explained='so'))
+    submit(course, 'eve', answered(course, RIGHT))
+    which = 'it' if len(students) == 1 else 'them'
+    assert main(['grade'], course=course) == 0
+    why = 'because a check could not decide'
+    wanted = f'{len(students)} of these {why}: ./course grade grades {which} again'
+    assert wanted in capsys.readouterr().out
+    assert main(['grade'], course=course) == 0
+    said = capsys.readouterr().out
+    assert f'{len(students)} graded, 1 unchanged' in said
+    assert 'could not decide' not in said
 
 
 def test_an_empty_gradebook_is_reported_with_the_place_of_submissions(tmp_path, released):

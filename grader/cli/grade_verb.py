@@ -21,6 +21,10 @@ from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend
 
 _NOT_STORED = 'Nothing was stored; --store stores it.'
+_AGAIN = (
+    '{} of these because a check could not decide: ./course grade grades {} again, best while the '
+    'machine is not busy.\n'
+)
 _BY_HAND = 'points by hand (.venv/bin/jupyter lab, menu Nbgrader, Formgrader), '
 
 
@@ -77,9 +81,13 @@ def _run_grade(
     failed = sum(row.stored is None for row in rows)
     reused = sum(row.reused for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
+    undecided = sum(
+        bool(row.stored and row.stored.pending and row.stored.undecided) for row in rows
+    )
+    again = _AGAIN.format(undecided, 'it' if undecided == 1 else 'them') if undecided else ''
     print(
         f'{len(rows) - failed - reused} graded, {reused} unchanged, {failed} could not be graded '
-        f'(–); {waiting} wait for a person (…).\n'
+        f'(–); {waiting} wait for a person (…).\n{again}'
         f'Report: {report}\nNext: {_BY_HAND * bool(waiting)}./course feedback, ./course scores'
     )
     return 1 if failed else 0

@@ -28,7 +28,7 @@ from grader.storage.database import (
 from grader.storage.held_scores import held_score, manual_scores
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
-from grader.storage.pipeline import first_reason, resources_of, store_scores
+from grader.storage.pipeline import first_reason, is_undecided, resources_of, store_scores
 from grader.storage.registering import register, register_all
 from grader.storage.rewritten_answers import note_rewritten
 
@@ -50,6 +50,8 @@ class StoredResult:
     """Why points are missing: the first reason, or ''."""
     late: float = 0.0
     """The points that lateness takes off the score."""
+    undecided: bool = False
+    """Whether a check could not decide, so that this is graded again in the next run."""
 
 
 def register_before_autograde(*, assignment: str, **_: object) -> None:
@@ -96,6 +98,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         pending=now.pending,
         reason=first_reason(saved),
         late=now.late,
+        undecided=is_undecided(graded),
     )
 
 

@@ -126,6 +126,11 @@ def make_unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
     return notebook
 
 
+def is_undecided(graded: NotebookNode) -> bool:
+    """Whether a check of an executed notebook could not decide, and has no score for that."""
+    return any(cell.metadata.get(KEY, {}).get('outcome') == 'ungraded' for cell in graded.cells)
+
+
 def first_reason(graded: NotebookNode) -> str:
     """Return the first reason why points are missing in an executed notebook, or ''.
 
