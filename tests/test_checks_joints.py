@@ -48,6 +48,28 @@ def test_joints_agree_in_any_order():
     assert joints.agree(joints.pose(message(-1.5708, 0.5236, name=NAMES[::-1])), RIGHT)
 
 
+def test_a_good_approximation_agrees_for_every_angle_and_a_rough_one_not_for_the_open_ones():
+    def agrees(convert, *pose_deg):
+        return joints.agree(
+            joints.pose(message(*map(convert, pose_deg))), joints.in_radians(pose_deg)
+        )
+
+    good = {
+        'over 57.3': lambda deg: deg / 57.3,
+        'times 0.0174533': lambda deg: deg * 0.0174533,
+        'four decimals': lambda deg: round(math.radians(deg), 4),
+    }
+    rough = {
+        '3.14': lambda deg: deg * 3.14 / 180,
+        'times 0.01745': lambda deg: deg * 0.01745,
+        'three decimals': lambda deg: round(math.radians(deg), 3),
+    }
+    tenths = [tenth / 10 for tenth in range(1801)]
+    off = {name: [deg for deg in tenths if not agrees(by, deg, -deg)] for name, by in good.items()}
+    assert [(name, found[:3]) for name, found in off.items() if found] == []
+    assert [name for name, by in rough.items() if agrees(by, *POSE_DEG)] == []
+
+
 @pytest.mark.parametrize(
     ('wrong', 'seen', 'advice'),
     [

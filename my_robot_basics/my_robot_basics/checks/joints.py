@@ -11,6 +11,9 @@ from my_robot_basics.feedback.errors import expect
 
 EXACT_RAD = 2e-4
 """How far off a position may be: some are rounded to four decimals."""
+ROUNDED_RAD, EXACT_PART = 1.2e-4, 1e-4
+"""The same for a large one: both may be rounded, and 57.3 for 180 / π is exact enough, for each
+angle alike. Otherwise hidden inputs would decide who is right."""
 MOST_JOINTS = 100
 """A message with more joints is not a pose of the arm, and is not looked at."""
 CLOSE_RAD = 0.02
@@ -58,11 +61,12 @@ def pose(message: Any) -> dict[str, float]:
     return {name: round(position, 4) for name, position in pairs}
 
 
-def agree(seen: dict[str, float], right: dict[str, float], within_rad: float = EXACT_RAD) -> bool:
-    """Whether `seen` has each joint of `right`, at the same position within `within_rad`."""
+def agree(seen: dict[str, float], right: dict[str, float]) -> bool:
+    """Whether `seen` has each joint of `right`, at the same position up to small errors."""
     return all(
-        joint in seen and abs(seen[joint] - position) < within_rad
-        for joint, position in right.items()
+        joint in seen
+        and abs(seen[joint] - at) < max(EXACT_RAD, ROUNDED_RAD + EXACT_PART * abs(at))
+        for joint, at in right.items()
     )
 
 
