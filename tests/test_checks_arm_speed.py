@@ -20,7 +20,10 @@ IN_FINER_STEPS = arm_speed._is_right_in_finer_steps
 
 
 def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0, lost_sec=0.0):
-    """Judge a move of this duration, which finer steps show, too; `reported` are (s, rad)."""
+    """Judge a move of this duration, which finer steps show, too; `reported` are (s, rad).
+
+    A third number there is the position of joint2, which is half of joint1's by default.
+    """
     arm = SimpleNamespace(
         start=(0.0, 0.0),
         time=SimpleNamespace(is_driven=is_driven, at_ns=lambda sent_ns: sent_ns),
@@ -30,7 +33,10 @@ def judge(seconds, *, speed=SPEED, reported=(), is_driven=True, stalled_sec=0.0,
         doubt=lambda: Starved if stalled_sec else CheckFailed,
         why_too_soon=lambda sent: '',
     )
-    told = [(round(at * 1e9), MoveArm.Feedback(position=[q, -q / 2])) for at, q in reported]
+    told = [
+        (round(at * 1e9), MoveArm.Feedback(position=[q, *(second or (-q / 2,))]))
+        for at, q, *second in reported
+    ]
     sent = SimpleNamespace(goal=moves.goal(MINUTE, speed=speed), feedback=lambda: told)
     arm_speed.expect_speed(arm, sent, MINUTE)
 
@@ -247,6 +253,42 @@ def test_a_busy_machine_excuses_a_small_error_of_speed_but_no_large_one(times, f
     with pytest.raises(CheckFailed) as raised:
         judge(BRIEF_SEC * times, speed=BRIEF, reported=told, is_driven=False, stalled_sec=1.0)
     assert raised.type is failure
+
+
+def one_after_the_other(*, step_sec=0.05):
+    """The feedback of an arm whose joint2 moves first, and then joint1."""
+    found = []
+    for step in range(round(1.5 * BRIEF_SEC / step_sec)):
+        gone = BRIEF * step_sec * step
+        found.append((step_sec * step, max(0.0, gone - 0.6), -min(gone, 0.6)))
+    return found
+
+
+def with_a_rest(*, from_sec, rest_sec, step_sec=0.05):
+    """The feedback of an arm that stands still on its way, and goes on to send feedback."""
+    times = [step_sec * step for step in range(round((BRIEF_SEC + rest_sec) / step_sec))]
+    return [(at, BRIEF * (min(at, from_sec) + max(0.0, at - from_sec - rest_sec))) for at in times]
+
+
+@pytest.mark.parametrize(
+    ('told', 'times', 'failure'),
+    [
+        (one_after_the_other(), 1.5, CheckFailed),
+        (with_a_rest(from_sec=0.0, rest_sec=BRIEF_SEC / 2), 1.5, Starved),
+        (with_a_rest(from_sec=BRIEF_SEC / 2, rest_sec=BRIEF_SEC / 2), 1.5, Starved),
+    ],
+    ids=['joint2 first', 'a rest at the start', 'a rest on the way'],
+)
+def test_a_busy_machine_does_not_let_an_arm_rest_that_sends_feedback(told, times, failure):
+    with pytest.raises(CheckFailed) as raised:
+        judge(BRIEF_SEC * times, speed=BRIEF, reported=told, is_driven=False, stalled_sec=2.0)
+    assert raised.type is failure
+
+
+def test_a_gap_in_the_feedback_on_a_busy_machine_is_no_rest():
+    told = with_a_rest(from_sec=0.1, rest_sec=0.5)
+    seen = [each for each in told if not 0.12 < each[0] < 0.62]
+    judge(BRIEF_SEC + 0.5, speed=BRIEF, reported=seen, is_driven=False, stalled_sec=1.0)
 
 
 def test_a_slow_loop_on_a_busy_machine_counts_as_starved():

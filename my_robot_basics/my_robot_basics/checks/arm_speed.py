@@ -4,7 +4,7 @@ import math
 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.arm_progress import bring, is_under_way
-from my_robot_basics.checks.reported_speed import FEWEST, ReportedSpeed, reported_speed
+from my_robot_basics.checks.reported_speed import FEWEST, ReportedSpeed, reported_speed, rest_of
 from my_robot_basics.checks.robot_time import DrivenTime
 from my_robot_basics.checks.speed_hints import JUMP_SEC, why_speed
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
@@ -49,11 +49,16 @@ def expect_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> None:
     is_told_right = tells and _is_right(arm, told, sent.goal.speed)
     tolerance = TOLERANCE if arm.time.is_driven else WALL_TOLERANCE
     off_sec, slack_sec = seconds - wanted_sec, tolerance * wanted_sec + SLACK_SEC
-    late_sec = arm.stalled_sec() if is_told_right else 0.0
+    rest = rest_of(arm, sent, position)
+    late_sec = arm.stalled_sec() if is_told_right and rest.sec <= slack_sec else 0.0
     is_in_time = -slack_sec <= off_sec <= slack_sec + late_sec
     if is_in_time and (is_told_right or not tells):
         return
-    is_proven = off_sec < -slack_sec or _is_proven(told, sent, wanted_sec, seconds)
+    is_proven = (
+        off_sec < -slack_sec
+        or rest.alone_sec > slack_sec
+        or _is_proven(told, sent, wanted_sec, seconds)
+    )
     doubt = CheckFailed if is_proven else arm.doubt()
     if is_in_time:
         seconds = wanted_sec * sent.goal.speed / told.rad_per_sec

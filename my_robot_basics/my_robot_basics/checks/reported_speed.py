@@ -18,6 +18,8 @@ FEWEST_OF_WALL = 3
 WALL_SEC, WALL_PART = 0.3, 0.1
 """A move by the wall clock may differ from it by WALL_SEC plus this part of the time since the
 goal was sent."""
+STILL_RAD = 1e-6
+"""A joint stands still if its position changes by no more between two messages."""
 OFTEN = 0.1
 """The quantile of a loop's gaps that is close to its sleep, even on a busy machine."""
 
@@ -55,6 +57,34 @@ def reported_speed(arm: WatchedArm, sent: SentGoal, position: Pose) -> ReportedS
         return ReportedSpeed(0.0)
     gone = ways[later] - ways[earlier]
     return ReportedSpeed(float(np.median(gone[is_later] / passed_sec[is_later])))
+
+
+@dataclass(frozen=True)
+class Rest:
+    """How long the faster joint stands still on its way, according to the feedback, in s."""
+
+    sec: float
+    """While feedback comes: a busy machine that stops the arm stops its feedback, too."""
+    alone_sec: float
+    """The part of it in which the other joint moves."""
+
+
+def rest_of(arm: WatchedArm, sent: SentGoal, position: Pose) -> Rest:
+    """How long the faster joint stands still in a move to that position, before its end."""
+    found = [
+        (arm.time.at_ns(sent_ns) / 1e9, *message.position)
+        for sent_ns, message in sent.feedback()
+        if len(message.position) == len(position)
+    ]
+    joint = max(range(len(position)), key=lambda each: abs(position[each] - arm.start[each]))
+    times, *joints = np.array(found).reshape(-1, 1 + len(position)).T
+    with np.errstate(invalid='ignore'):  # a student's node may send inf
+        moves = np.abs(np.diff(joints, axis=1)) > STILL_RAD
+        is_on_way = np.abs(joints[joint][:-1] - position[joint]) > STILL_RAD
+    stands = is_on_way & ~moves[joint]
+    passed_sec = np.diff(times)
+    alone = stands & moves.any(axis=0)
+    return Rest(float(passed_sec[stands].sum()), float(passed_sec[alone].sum()))
 
 
 def is_of_wall_time(arm: WatchedArm, sent: SentGoal, position: Pose, *, apart_sec: float) -> bool:
