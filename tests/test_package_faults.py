@@ -178,34 +178,22 @@ def test_a_script_that_linux_cannot_start_is_named(tmp_path, line, words):
 
 
 @pytest.mark.parametrize(
-    ('line', 'is_own'),
+    ('is_in', 'line', 'expected'),
     [
-        ('signal.signal(signal.SIGINT, stop)', True),
-        ('signal(SIGINT, stop)', True),
-        ('rclpy.init(signal_handler_options=SignalHandlerOptions.NO)', True),
-        ('uninstall_signal_handlers()', True),
-        ('signal.signal(signal.SIGTERM, stop)', False),
-        ('rclpy.init(signal_handler_options=SignalHandlerOptions.ALL)', False),
-        ('pass  # Ctrl-C sends SIGINT', False),
+        (handles_ctrl_c, 'signal.signal(signal.SIGINT, stop)', True),
+        (handles_ctrl_c, 'signal(SIGINT, stop)', True),
+        (handles_ctrl_c, 'rclpy.init(signal_handler_options=SignalHandlerOptions.NO)', True),
+        (handles_ctrl_c, 'uninstall_signal_handlers()', True),
+        (handles_ctrl_c, 'signal.signal(signal.SIGTERM, stop)', False),
+        (handles_ctrl_c, 'rclpy.init(signal_handler_options=SignalHandlerOptions.ALL)', False),
+        (handles_ctrl_c, 'pass  # Ctrl-C sends SIGINT', False),
+        (waits_in_call, 'response = self.client.call(request)', True),
+        (waits_in_call, 'future = self.client.call_async(request)', False),
+        (waits_in_call, 'recall(request)', False),
     ],
 )
-def test_code_that_handles_ctrl_c_itself_is_found(tmp_path, line, is_own):
+def test_code_that_keeps_a_program_from_ending_is_found(tmp_path, is_in, line, expected):
     folder = make_package(tmp_path)
     (folder / 'greeter/more.py').write_text(f'{line}\n')
-    assert handles_ctrl_c(folder) is is_own
-    assert not handles_ctrl_c(folder / 'nowhere')
-
-
-@pytest.mark.parametrize(
-    ('line', 'waits'),
-    [
-        ('response = self.client.call(request)', True),
-        ('future = self.client.call_async(request)', False),
-        ('recall(request)', False),
-    ],
-)
-def test_code_that_waits_in_call_is_found(tmp_path, line, waits):
-    folder = make_package(tmp_path)
-    (folder / 'greeter/more.py').write_text(f'{line}\n')
-    assert waits_in_call(folder) is waits
-    assert not waits_in_call(folder / 'nowhere')
+    assert is_in(folder) is expected
+    assert not is_in(folder / 'nowhere')

@@ -6,7 +6,7 @@ A server that computes the position from its clock keeps pace; one that adds up 
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.robot_time import DrivenTime
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
-from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, faster_joint
 
 COARSE_NS = 250_000_000
 """How far a coarse step moves the clock."""
@@ -78,7 +78,7 @@ def _last_report(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[float
     if not found or len(found[-1][1].position) != len(position):
         return None
     ways = [b - a for a, b in zip(arm.start, position, strict=True)]
-    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
+    joint = faster_joint(arm.start, position)
     sent_ns, message = found[-1]
     gone = (message.position[joint] - arm.start[joint]) / ways[joint] * abs(ways[joint])
     return arm.time.at_ns(sent_ns) / 1e9, gone

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from my_robot_basics.checks.action_ends import SentGoal
-from my_robot_basics.checks.watched_arm import Pose, WatchedArm
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, faster_joint
 
 FEWEST = 4
 """The least number of feedback messages from which a speed is computed."""
@@ -76,7 +76,7 @@ def rest_of(arm: WatchedArm, sent: SentGoal, position: Pose) -> Rest:
         for sent_ns, message in sent.feedback()
         if len(message.position) == len(position)
     ]
-    joint = max(range(len(position)), key=lambda each: abs(position[each] - arm.start[each]))
+    joint = faster_joint(arm.start, position)
     times, *joints = np.array(found).reshape(-1, 1 + len(position)).T
     with np.errstate(invalid='ignore'):  # a student's node may send inf
         moves = np.abs(np.diff(joints, axis=1)) > STILL_RAD
@@ -109,7 +109,7 @@ def _on_the_way(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The times of the feedback during the move, in s, and the faster joint's way, in rad."""
     ways = [b - a for a, b in zip(arm.start, position, strict=True)]
-    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
+    joint = faster_joint(arm.start, position)
     found = []
     for sent_ns, message in sent.feedback():
         if len(message.position) == len(ways):

@@ -50,6 +50,11 @@ def far_rad(start: Pose, end: Pose) -> float:
     return max(abs(b - a) for a, b in zip(start, end, strict=True))
 
 
+def faster_joint(start: Pose, end: Pose) -> int:
+    """The number of the joint that moves farther, and so faster."""
+    return max(range(len(end)), key=lambda number: abs(end[number] - start[number]))
+
+
 @dataclass
 class WatchedArm:
     """The connected server, with its arm at rest at `start`, and the clock that the check uses."""
