@@ -9,7 +9,7 @@ from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line
 from my_robot_basics.checks.arm_results import IN_DEGREES, is_near, why_aborted
 from my_robot_basics.checks.joints import SIGNS, SWAPPED
-from my_robot_basics.checks.watched_arm import Pose, WatchedArm
+from my_robot_basics.checks.watched_arm import Pose, WatchedArm, faster_joint
 from my_robot_basics.feedback.errors import fail, shorten
 
 ON_LINE, NEAR_RAD = 0.05, 0.02
@@ -103,9 +103,8 @@ def _parts(seen: Sequence[float], start: Pose, goal: Pose) -> list[float]:
 
 def _is_far_joint_between(seen: Sequence[float], start: Pose, goal: Pose) -> bool:
     """Whether the joint with the longest way is on it; in degrees, it would be far beyond it."""
-    ways = [b - a for a, b in zip(start, goal, strict=True)]
-    joint = max(range(len(ways)), key=lambda number: abs(ways[number]))
-    return 0.0 < (seen[joint] - start[joint]) / ways[joint] < 1.0
+    joint = faster_joint(start, goal)
+    return 0.0 < (seen[joint] - start[joint]) / (goal[joint] - start[joint]) < 1.0
 
 
 def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:
