@@ -67,7 +67,8 @@ def test_messages_not_yet_taken_by_the_check_are_in_the_recording(monkeypatch):
         recorder = topic(TOPIC).listen(watcher)
         # longer than it is asked for: what was sent within that time has then arrived
         monkeypatch.setattr(watcher, 'spin_for', lambda seconds: time.sleep(seconds + 1.0))
-        recording = wall_recording.record(watcher, recorder, seconds=2.0)
+        # it ends between two messages: one at its end would be in it or not by rounding
+        recording = wall_recording.record(watcher, recorder, seconds=2.01)
         recorder.take_all()
     until_sec = recording.start_sec + recording.seconds
     sent = [ns for _, ns in recorder.received if recording.start_sec < ns / 1e9 <= until_sec]
