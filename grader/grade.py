@@ -1,7 +1,8 @@
 """The whole flow: read a submission, restore it, run and judge it, store the result."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future
+from dataclasses import replace
 
 from grader.common.errors import CourseError
 from grader.common.futures import run_ahead
@@ -18,6 +19,8 @@ from grader.workers.workers import Workers
 
 AHEAD = 4
 """Times the backend's capacity: how many finished submissions may wait for a slower one."""
+MOST_IN_VAIN = 3
+"""So many in a row that stay undecided show that something else keeps the machine busy."""
 
 
 def grade_all(
@@ -34,8 +37,9 @@ def grade_all(
     Each submission gets an outcome, whatever happens. The default backend is this machine's worker
     processes. `seed` replays inputs that hidden tests choose; by default each student has a seed
     of their own. Grading again gives the same result. If nothing has changed, the stored result
-    is used again, unless `force`. Raises CourseError, before anything runs, if there is no
-    sandbox, unless `trust_students`.
+    is used again, unless `force`. Those in which a check could not decide are graded again at the
+    end, one at a time, and yielded once more. Raises CourseError, before anything runs, if there
+    is no sandbox, unless `trust_students`.
     """
     with backend or Workers() as backend:
         isolated = backend.require_isolation(trust_students=trust_students)
@@ -49,9 +53,34 @@ def grade_all(
                 raise CourseError(found.problem)
             return grading.start(found, assignments[found.assignment])
 
+        undecided = {}
         with share_engine(course.db_url):
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
-                yield grading.store(found, work)
+                outcome = grading.store(found, work)
+                yield outcome
+                if outcome.is_undecided:
+                    undecided[found] = outcome
+            yield from _grade_again(grading, undecided, start)
+
+
+def _grade_again(
+    grading: Grading,
+    undecided: Mapping[SubmissionFolder, SubmissionOutcome],
+    start: Callable[[SubmissionFolder], 'Future[GradedSubmission]'],
+) -> Generator[SubmissionOutcome, None, None]:
+    """Grade undecided submissions with no other beside them; `former` stays that before the run.
+
+    It ends early if MOST_IN_VAIN in a row stay undecided.
+    """
+    in_vain = 0
+    for found, first in undecided.items():
+        outcome = replace(grading.store(found, start(found)), again=True)
+        if first.stored and outcome.stored:
+            outcome = replace(outcome, stored=replace(outcome.stored, former=first.stored.former))
+        yield outcome
+        in_vain = in_vain + 1 if outcome.is_undecided else 0
+        if in_vain == MOST_IN_VAIN:
+            return
 
 
 def _prepare(

@@ -62,6 +62,13 @@ class SubmissionOutcome:
     """Seconds that grading took; None if nothing was run."""
     reused: bool = False
     """Whether nothing has changed since the last grading, so that its result is used again."""
+    again: bool = False
+    """Whether it follows an outcome of the same run in which a check could not decide."""
+
+    @property
+    def is_undecided(self) -> bool:
+        """Whether a check could not decide."""
+        return self.stored is not None and self.stored.undecided
 
 
 @dataclass(frozen=True)

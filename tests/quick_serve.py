@@ -2,6 +2,7 @@
 
 import asyncio
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -84,11 +85,21 @@ def command(course: Course, inbound: Path, *options: str) -> list[str]:
     return [sys.executable, '-c', code, str(course.root), str(inbound), *options]
 
 
+times: Counter[str] = Counter()
+"""How often each answer with `busy` was graded."""
+
+
 async def look(notebook, *, extra_files=(), seed='', trust_students=False):
-    """Accept an answer with `2 * x`; with `# SECONDS s` in the answer, take that long."""
+    """Accept an answer with `2 * x`; with `# SECONDS s` in the answer, take that long.
+
+    Do not decide the first N gradings of an answer with `busy N`.
+    """
     answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
     await asyncio.sleep(float(answer.split(' s')[0].removeprefix('# ')) if ' s' in answer else 0.1)
     reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
+    if 'busy' in answer:
+        reason = '?' if times[answer] < int(answer.rpartition('busy ')[2]) else reason
+        times[answer] += 1
     notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
     notebook.metadata[KEY]['seed'] = seed
     return Execution(notebook=notebook, verdicts=(), notes=())

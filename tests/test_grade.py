@@ -1,15 +1,17 @@
 import os
 import tempfile
+from collections import Counter
 
 import pytest
 from course_maker import TOY, answered, executed, submit
+from nbgrader.api import Gradebook
 from stand_in import stand_in
 
 from grader.__main__ import main
 from grader.cli.demo import demo
 from grader.common.errors import CourseError
 from grader.course import Course
-from grader.grade import grade_all
+from grader.grade import MOST_IN_VAIN, grade_all
 from grader.judging import task
 from grader.judging.execute import Execution
 from grader.notebook.restore import KEY
@@ -25,9 +27,9 @@ WRONG = 'def double(x):\n    return x + 1'
 def course(released, tmp_path, monkeypatch):
     """A gradebook of its own; no answer is run, the verdict is made from its text.
 
-    A check of an answer with the word `busy` can't decide when it runs first.
+    A check of an answer with `busy N` can't decide the first N times.
     """
-    undecided = set()
+    times: Counter[str] = Counter()
 
     async def look(notebook, *, extra_files=(), seed='', trust_students=False):
         answer = next(cell.source for cell in notebook.cells if cell.id == 'double')
@@ -35,8 +37,8 @@ def course(released, tmp_path, monkeypatch):
         if 'crash' in answer:
             raise OSError('no room')
         reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
-        reason = '?' if 'busy' in answer and seed not in undecided else reason
-        undecided.add(seed)
+        reason = '?' if times[seed] < int(answer.partition('# busy ')[2] or 0) else reason
+        times[seed] += 1
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
         notebook.metadata[KEY]['seed'] = seed
         return Execution(notebook=notebook, verdicts=(), notes=())
@@ -140,10 +142,45 @@ def test_one_student_or_assignment_can_be_selected_for_grading(course):
         find_submissions(course, assignment='99')
 
 
+def test_a_check_that_could_not_decide_is_tried_again_at_the_end_of_the_run(course, capsys):
+    submit(course, 'ada', answered(course, f'{RIGHT}  # busy 0', explained='so'))
+    assert main(['grade'], course=course) == 0
+    capsys.readouterr()
+    submit(course, 'ada', answered(course, f'{WRONG}  # busy 2', explained='so'))
+    submit(course, 'eve', answered(course, RIGHT))
+    assert main(['grade'], course=course) == 0
+    said = capsys.readouterr().out
+    rows = [line.split() for line in said.splitlines() if line.startswith(('ada', 'eve'))]
+    assert [row[0] for row in rows] == ['ada', 'eve', 'ada']
+    assert '(graded again) (was 3)' in said
+    assert f'1 score changed:\n  ada  {TOY}  3 → 0 (-3)' in said
+    assert '2 graded, 0 unchanged' in said
+    assert 'could not decide' not in said
+
+
+def test_few_are_graded_again_alone_if_none_of_them_can_be_decided(course):
+    for number in range(MOST_IN_VAIN + 2):
+        submit(course, f'ada{number}', answered(course, f'{RIGHT}  # busy 9'))
+    submit(course, 'eve', answered(course, RIGHT))
+    again = [row.student_id for row in grade_all(course, find_submissions(course)) if row.again]
+    assert again == [f'ada{number}' for number in range(MOST_IN_VAIN)]
+
+
+def test_a_check_whose_points_a_person_gave_is_not_tried_again(course):
+    submit(course, 'ada', answered(course, f'{RIGHT}  # busy 9', explained='so'))
+    list(grade_all(course, find_submissions(course)))
+    with Gradebook(course.db_url) as book:
+        for name in ('double-check', 'double-hidden', 'explain'):
+            grade = book.find_grade(name, TOY, TOY, 'ada')
+            grade.manual_score, grade.needs_manual_grade = 1.0, False
+        book.db.commit()
+    assert [row.again for row in grade_all(course, find_submissions(course))] == [False]
+
+
 @pytest.mark.parametrize('students', [['ada'], ['ada', 'bob']])
 def test_a_check_that_could_not_decide_is_tried_again_by_the_next_run(course, capsys, students):
     for student in students:
-        submit(course, student, answered(course, f'{RIGHT}  # busy', explained='so'))
+        submit(course, student, answered(course, f'{RIGHT}  # busy 2', explained='so'))
     submit(course, 'eve', answered(course, RIGHT))
     which = 'it' if len(students) == 1 else 'them'
     assert main(['grade'], course=course) == 0

@@ -17,15 +17,16 @@ from grader.collect.archive_entries import MAX_PARTS
 from grader.common.errors import GradebookError
 from grader.common.text import printable
 from grader.serving import inbound as inbound_module
-from grader.serving import reception, steps
+from grader.serving import reception, results, steps
 from grader.serving import rounds as rounds_module
 from grader.serving import serve as serve_module
+from grader.serving import state as state_module
 from grader.serving.inbound import new_entries
 from grader.serving.queue import FAILED, GRADED, REFUSED, Arrival
 from grader.serving.queue_file import open_queue
 from grader.serving.reception import take_in_new_entries
+from grader.serving.state import ServingState
 from grader.serving.status import write_status_page
-from grader.serving.steps import ServingState
 
 
 @pytest.fixture
@@ -215,6 +216,12 @@ def test_serving_ends_at_an_error_that_every_entry_would_meet(
     assert refused(course) == {}
 
 
+MODULES = {
+    '_prepared': state_module,
+    'put_in_place': steps,
+    'write_page': results,
+    'release_page': results,
+}
 STEPS = {
     '_prepared': (KeyError('double'), FAILED, 'not graded, the grader failed: KeyError: '),
     'put_in_place': (KeyError('\x1b'), REFUSED, 'the grader failed: KeyError: '),
@@ -230,7 +237,7 @@ def test_an_unexpected_error_after_intake_affects_only_one_submission(
     error, state, reason = STEPS[step]
     for student in ('mallory', 'zoe'):
         put_there(course, inbound, student).joinpath('submission_secret.txt').write_text('aa')
-    does, failed = getattr(steps, step), []
+    does, failed = getattr(MODULES[step], step), []
 
     def fails_once(*given, **named):
         if failed:
@@ -238,7 +245,7 @@ def test_an_unexpected_error_after_intake_affects_only_one_submission(
         failed.append(given)
         raise error
 
-    monkeypatch.setattr(steps, step, fails_once)
+    monkeypatch.setattr(MODULES[step], step, fails_once)
     monkeypatch.setattr(quick_serve, 'feedback_folder', lambda inbound: inbound.parent / 'pages')
     said = serve_here(course, inbound)
     found = {each.student_id: (each.state, each.reason) for each in arrivals(course)}
@@ -308,7 +315,7 @@ def test_a_full_disk_ends_serving_and_the_next_process_goes_on(
         raise OSError(28, 'No space left on device')
 
     with monkeypatch.context() as patch:
-        patch.setattr(steps, step, full)
+        patch.setattr(MODULES[step], step, full)
         with pytest.raises((OSError, GradebookError)):
             serve_here(course, inbound)
     assert serve_here(course, inbound)

@@ -19,8 +19,8 @@ from grader.serving.queue import GRADED, GRADING, REFUSED, REPLACED, Arrival
 from grader.serving.queue_file import open_queue, open_queue_to_read
 from grader.serving.reception import take_in_new_entries
 from grader.serving.rounds import Rounds
+from grader.serving.state import ServingState
 from grader.serving.status import SHOWN, status_lines, write_status_page
-from grader.serving.steps import ServingState
 
 
 @pytest.fixture

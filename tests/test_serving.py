@@ -33,7 +33,8 @@ from grader.serving.inbound import new_entries
 from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING, Arrival
 from grader.serving.queue_file import open_queue, open_queue_to_read
 from grader.serving.serve import serving_lock
-from grader.serving.steps import ServingState, start_gradings
+from grader.serving.state import ServingState
+from grader.serving.steps import start_gradings
 from grader.storage.records import graded_notebook, records
 
 

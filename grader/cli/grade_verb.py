@@ -22,8 +22,8 @@ from grader.workers.backend import Backend
 
 _NOT_STORED = 'Nothing was stored; --store stores it.'
 _AGAIN = (
-    '{} of these because a check could not decide: ./course grade grades {} again, best while the '
-    'machine is not busy.\n'
+    '{} of these because a check could not decide: ./course grade grades {} again, best while '
+    'nothing else keeps the machine busy.\n'
 )
 _BY_HAND = 'points by hand (.venv/bin/jupyter lab, menu Nbgrader, Formgrader), '
 
@@ -62,16 +62,17 @@ def _run_grade(
         trust_students=asked.trust_students,
         force=asked.force,
     )
-    rows = []
+    by_submission = {}
     if asked.trust_students and not require_isolation(trust_students=True):
         print(f'{NO_SANDBOX.capitalize()}, and student code has your rights (--trust-students).')
     try:
         for row in print_rows(graded, submissions):
-            rows.append(row)
+            by_submission[row.student_id, row.assignment] = row  # a second one replaces the first
     except KeyboardInterrupt:
         graded.close()  # start nothing more, and end what runs, before the summary is printed
-        summary = f'{len(rows)} of {len(submissions)} submissions are graded and stored'
+        summary = f'{len(by_submission)} of {len(submissions)} submissions are graded and stored'
         raise KeyboardInterrupt(summary) from None
+    rows = [*by_submission.values()]
     report = write_report(course, run, rows, language=asked.language)
     if changed := changes(rows):
         print(f'{len(changed)} score{"s" * (len(changed) > 1)} changed:')
@@ -81,9 +82,7 @@ def _run_grade(
     failed = sum(row.stored is None for row in rows)
     reused = sum(row.reused for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
-    undecided = sum(
-        bool(row.stored and row.stored.pending and row.stored.undecided) for row in rows
-    )
+    undecided = sum(row.is_undecided for row in rows)
     again = _AGAIN.format(undecided, 'it' if undecided == 1 else 'them') if undecided else ''
     print(
         f'{len(rows) - failed - reused} graded, {reused} unchanged, {failed} could not be graded '

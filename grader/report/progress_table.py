@@ -40,10 +40,11 @@ def print_rows(
     more = ['expected'] if expected else []
     print(line('student', 'assignment', *more, 'score', 'reason'), flush=True)
     bar = tqdm(rows, total=len(submissions), disable=None, leave=False, unit='notebook')
-    outcomes: Counter[str] = Counter()
+    by_submission: dict[tuple[str, str], str] = {}
     with bar, _ticking(bar):
         for row in bar:
-            outcomes[_outcome(row)] += 1
+            by_submission[row.student_id, row.assignment] = _outcome(row)
+            outcomes = Counter(by_submission.values())
             counted = (f'{outcomes[said]} {said}' for said in _OUTCOMES if outcomes[said])
             bar.set_postfix_str(', '.join(counted), refresh=False)
             more = [expected.get(row.student_id, '')] if expected else []
@@ -107,7 +108,7 @@ def reason_in_a_line(row: SubmissionOutcome) -> str:
         text = f'(was {stored.former:g}) {text}'
     elif row.reused:
         text = f'(unchanged) {text}'
-    return text
+    return f'(graded again) {text}' if row.again else text
 
 
 def changes(rows: Iterable[SubmissionOutcome]) -> list[str]:

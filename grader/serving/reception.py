@@ -7,7 +7,7 @@ from grader.common.text import printable
 from grader.serving.inbound import Entry, new_entries
 from grader.serving.intake import refuse, take_in
 from grader.serving.queue import REFUSED, Arrival
-from grader.serving.steps import ServingState
+from grader.serving.state import ServingState
 from grader.serving.unexpected_errors import affects_all_submissions, log_unexpected_error
 
 BUDGET_SEC = 0.5

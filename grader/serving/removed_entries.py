@@ -5,7 +5,7 @@ import time
 
 from grader.common.text import printable
 from grader.serving.inbound import key_of
-from grader.serving.steps import ServingState
+from grader.serving.state import ServingState
 
 SETTLED_NS = 5_000_000_000
 """A folder that changed less than this ago may change again with the same time: some file

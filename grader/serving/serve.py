@@ -16,7 +16,9 @@ from grader.serving.queue import Queue
 from grader.serving.queue_file import open_queue
 from grader.serving.reception import take_in_new_entries
 from grader.serving.removed_entries import RemovedEntries
-from grader.serving.steps import ServingState, start_gradings, store_finished, store_replaced
+from grader.serving.results import grade_undecided, store_finished
+from grader.serving.state import ServingState
+from grader.serving.steps import start_gradings, store_replaced
 from grader.storage.backups import recover_and_back_up
 from grader.storage.database import share_engine
 from grader.workers.backend import Backend
@@ -67,10 +69,12 @@ def serve(
                 changed(queue)
             elif serving.rounds.is_under_way:
                 continue
-            elif once and not serving.running:
-                return
             elif serving.running:
                 wait(serving.running, timeout=LOOK_SEC, return_when=FIRST_COMPLETED)
+            elif grade_undecided(serving):
+                continue
+            elif once:
+                return
             else:
                 time.sleep(LOOK_SEC)
 

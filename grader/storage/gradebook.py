@@ -51,7 +51,7 @@ class StoredResult:
     late: float = 0.0
     """The points that lateness takes off the score."""
     undecided: bool = False
-    """Whether a check could not decide, so that this is graded again in the next run."""
+    """Whether a check could not decide, and nobody has given its points: it is graded again."""
 
 
 def register_before_autograde(*, assignment: str, **_: object) -> None:
@@ -98,7 +98,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         pending=now.pending,
         reason=first_reason(saved),
         late=now.late,
-        undecided=is_undecided(graded),
+        undecided=now.pending and is_undecided(graded),
     )
 
 
