@@ -1,6 +1,7 @@
 """The errors of `run` for an object that it cannot run, of which nothing is left behind."""
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import pytest
@@ -52,6 +53,20 @@ def test_a_constructor_that_returns_a_value_raises_the_error_of_python():
         run(Returns)
     assert not any(isinstance(node, Returns) for node in nodes_here())
     stop()
+
+
+@dataclass
+class Data(Node):
+    rate_hz: float = 5.0
+
+    def __post_init__(self):
+        super().__init__('data')
+
+
+def test_a_class_whose_nodes_can_not_be_hashed_is_refused_before_there_is_a_node():
+    with pytest.raises(NotRunnable, match='remove `@dataclass` above the class'):
+        run(Data)
+    assert not any(isinstance(node, Data) for node in nodes_here())
 
 
 @pytest.mark.parametrize(

@@ -15,13 +15,19 @@ _METHODS = (FunctionType, staticmethod, classmethod)
 
 
 def expect_runnable(NodeClass: object) -> None:
-    """Raise NotRunnable if it is not a node class, or if a method overrides a property of Node.
+    """Raise NotRunnable if it is not a class of nodes that rclpy can spin.
 
-    rclpy reads these properties at each spin, so such a node would raise again and again.
+    rclpy puts nodes into sets, so they have to be hashable. At each spin, it reads the properties
+    of Node, so a node with a method in place of one would raise again and again.
     """
     __tracebackhide__ = True
     if not (isinstance(NodeClass, type) and issubclass(NodeClass, Node)):
         raise NotRunnable(not_a_class(NodeClass))
+    if NodeClass.__hash__ is None:
+        raise NotRunnable(
+            f'expected {NodeClass.__name__} to have no `__eq__` of its own, saw one: rclpy could '
+            'not put its nodes into a set, so remove `@dataclass` above the class, or that method'
+        )
     hidden = (
         name
         for name in _OWN
