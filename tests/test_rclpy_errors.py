@@ -3,6 +3,7 @@
 The exceptions are those that rclpy and Python raise, of the versions that are installed.
 """
 
+import inspect
 import math
 
 import pytest
@@ -37,6 +38,7 @@ NAMES = {
     **{'ReliabilityPolicy': ReliabilityPolicy, 'DurabilityPolicy': DurabilityPolicy},
     **{'qos_profile_sensor_data': qos_profile_sensor_data, 'JointState': JointState},
     **{'Bool': Bool, 'Float64MultiArray': Float64MultiArray, 'Int32': Int32, 'String': String},
+    'unwrap': inspect.unwrap,  # `live` gives better advice, but does not run in a program
     'began': Duration(seconds=0.5),
     'client': ActionClient.__new__(ActionClient),
     'parameter': Parameter('rate_hz', value=5.0),
@@ -111,8 +113,8 @@ def hint_of(error):
         ("Node.create_client(None, SolveIK, '/solve_ik', 10)", NO_CLIENT_DEPTH),
         ("Node.create_client(None, SolveIK, '/solve_ik', print, 10)", NO_CLIENT_DEPTH),
         ("ActionServer(None, MoveArm, '/move_arm', print, print, print)", CALLBACKS),
-        ("ActionServer(MoveArm, '/move_arm', print)", SERVER),
-        ("ActionClient(MoveArm, '/move_arm')", CLIENT),
+        ("unwrap(ActionServer.__init__)(None, MoveArm, '/move_arm', print)", SERVER),
+        ("unwrap(ActionClient.__init__)(None, MoveArm, '/move_arm')", CLIENT),
         ("ActionClient(None, MoveArm, '/move_arm', 10)", CLIENT),
         ('client.cancel_goal_async()', OF_GOAL),
         ('client.get_result_async()', OF_GOAL),
