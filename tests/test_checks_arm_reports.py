@@ -1,5 +1,6 @@
 """What a check reads from the feedback on a move, with made-up messages, each with a near miss."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, why_off_line
 from my_robot_basics.checks.arm_remaining import expect_remaining
 from my_robot_basics.checks.arm_reports import MoveReport
+from my_robot_basics.checks.arm_results import ELSEWHERE, IN_DEGREES, NOT_THERE, why_off
 from my_robot_basics.checks.robot_time import WallTime
 from my_robot_basics.checks.watched_arm import WatchedArm
 from my_robot_basics.feedback.errors import CheckFailed, Starved
@@ -162,3 +164,16 @@ def test_advice_names_no_cause_if_two_mistakes_would_explain_remaining():
         expect_remaining(
             np.array([0.3, 0.2, 0.1]), -WAYS, start=(0.0, 0.0), end=[-each for each in END_BELOW]
         )
+
+
+@pytest.mark.parametrize(
+    ('seen', 'why'),
+    [
+        ([1.191, -0.595], NOT_THERE),
+        ([1.2, -0.6], 'do not round the positions'),
+        ([math.degrees(1.234), math.degrees(-0.567)], IN_DEGREES),
+        ([0.3, 1.5], ELSEWHERE),
+    ],
+)
+def test_a_result_that_is_a_little_off_is_not_taken_for_one_of_wrong_units(seen, why):
+    assert why_off(seen, [1.2, -0.6] if why == NOT_THERE else [1.234, -0.567], start=()) == why

@@ -114,5 +114,9 @@ def why_off(seen: Sequence[float], wanted: Pose, *, start: Pose) -> str:
         return IN_DEGREES
     if is_near(seen, [math.radians(each) for each in wanted], within_rad=1e-3):
         return 'the positions of MoveArm are in radians already'
+    if any(is_near(seen, [round(each, places) for each in wanted], 1e-6) for places in (0, 1)):
+        return 'do not round the positions'
+    if is_near(seen, wanted, within_rad=ASIDE_RAD):
+        return NOT_THERE
     why = joints.why_off(seen, [math.degrees(each) for each in wanted])
     return why if 'convert' not in why else ELSEWHERE
