@@ -33,6 +33,10 @@ NO_POSITIONS = (
     'of any other name, such as `positions`'
 )
 """Advice for an empty list: rclpy checks the names of arguments only if it is told to."""
+NO_NAMES = (
+    'put the names of the joints into the field `name`: JointState(…) ignores arguments of any '
+    'other name, such as `names`'
+)
 CONVERT_EACH = (
     'other angles came out right: convert each with radians(), whatever its sign or size, and keep'
     ' nothing of those before'
@@ -160,6 +164,8 @@ def why_off(
 
 def why_names(seen: Sequence[str], names: Sequence[str]) -> str:
     """Advice for names that are not these; several rounds of these come from one list."""
+    if not seen:
+        return NO_NAMES
     if len(seen) > len(names) and set(seen) == set(names):
         return 'it adds to the names of the call before: make a new message and list each time'
     return 'message.name is a list of the joint names of the URDF, letter for letter'

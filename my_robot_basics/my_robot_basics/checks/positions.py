@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from my_robot_basics.checks import pictures
+from my_robot_basics.checks import joints, pictures
 from my_robot_basics.feedback.errors import expect, fail
 
 ANGLE_SLACK_RAD = 1e-3
@@ -28,7 +28,9 @@ def check_positions(
             seen == len(low),
             expected=f'{len(low)} positions in each message',
             seen=str(seen),
-            hint='message.position holds one angle for each joint, in the order of the names',
+            hint='message.position holds one angle for each joint, in the order of the names'
+            if seen
+            else joints.NO_POSITIONS,
         )
     poses = [_by_name(message, names) for message in messages]
     for pose in poses:
