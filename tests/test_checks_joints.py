@@ -30,7 +30,7 @@ def test_a_float_array_is_no_pose_and_gets_advice():
         (NAMES * 2, 'it adds to the names of the call before'),
         (['joint1', 'joint1', 'joint3'], 'letter for letter'),
         (['joint_1', 'joint_2'], 'letter for letter'),
-        ([], 'letter for letter'),
+        ([], 'ignores arguments of any other name'),
     ],
 )
 def test_names_that_grow_with_each_call_get_another_advice_than_wrong_ones(seen, advice):
