@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -311,6 +312,17 @@ def test_an_exception_that_ended_a_thread_is_reported_until_a_new_start(monkeypa
 
 def _raise(error):
     raise error
+
+
+def test_the_warning_about_a_client_that_has_gone_is_hidden(monkeypatch):
+    monkeypatch.setattr(threading, 'excepthook', threading.excepthook)
+    monkeypatch.setattr(sys, 'unraisablehook', sys.unraisablehook)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter('always')
+        harmless_errors.hide()
+        for what in 'failed to send response (timeout): client will not', 'coroutine was never':
+            warnings.warn(what, RuntimeWarning, stacklevel=1)
+    assert [str(each.message) for each in told] == ['coroutine was never']
 
 
 @pytest.mark.starts
