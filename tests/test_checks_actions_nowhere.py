@@ -68,9 +68,10 @@ NOWHERE = [
     (ReturnsNothing, r'end the execute callback with `return MoveArm.Result\(position=…\)`'),
     (
         RaisesInExecute,
-        'the execute callback raised an exception .*joint3.*; fix that first: the callback ended',
+        'the execute callback raised an exception .*joint3.*; fix that first, and run again the '
+        'cell that starts or builds the node: the callback ended there',
     ),
-    (SleepsWithAsyncio, 'no running event loop.*, so wait without asyncio, .*; fix that first: t'),
+    (SleepsWithAsyncio, 'no running event loop.*, so wait without asyncio, .*; fix that first, '),
     (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),
     (WaitsForItsOwnTimer, "the execute callback keeps the node's only thread: wait with"),
     (NeverEnds, 'end the loop of the execute callback when the arm is there'),
