@@ -5,7 +5,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 
 from grader.common.errors import CourseError
-from grader.common.futures import run_ahead
+from grader.common.futures import run_ahead, started
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment, SubmissionOutcome
 from grader.storage.backups import recover_and_back_up
@@ -74,10 +74,12 @@ def _grade_again(
     """
     in_vain = 0
     for found, first in undecided.items():
-        outcome = replace(grading.store(found, start(found)), again=True)
+        outcome = grading.store(found, started(start, found))
         if first.stored and outcome.stored:
             outcome = replace(outcome, stored=replace(outcome.stored, former=first.stored.former))
-        yield outcome
+        elif first.stored:  # the first result is still what is stored
+            outcome = replace(first, reason=f'{first.reason}; then {outcome.reason}')
+        yield replace(outcome, again=True)
         in_vain = in_vain + 1 if outcome.is_undecided else 0
         if in_vain == MOST_IN_VAIN:
             return

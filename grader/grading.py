@@ -9,7 +9,7 @@ from functools import cache, partial
 from nbformat import NotebookNode
 
 from grader.collect.submission_folders import contents
-from grader.common.errors import ClusterError, GradebookError, TaskFailed
+from grader.common.errors import ClusterError, GradebookError, SubmissionChanged, TaskFailed
 from grader.common.futures import completed_future, then
 from grader.common.text import printable
 from grader.course import Course
@@ -32,7 +32,8 @@ from grader.storage.seeds import seeds
 from grader.storage.submitted import SubmissionFolder
 from grader.workers.backend import Backend, submit_for_grading
 
-REPLACED = 'it was handed in again meanwhile: run ./course grade again'
+CHANGED = 'its files have changed meanwhile: run ./course grade again'
+GONE = 'its folder was removed meanwhile'
 
 
 @dataclass(frozen=True)
@@ -158,8 +159,10 @@ class Grading:
             graded = work.result()
             seconds = graded.seconds
             with raise_gradebook_errors(self.course), gradebook_lock(self.course.gradebook):
+                if not found.folder.is_dir():
+                    raise SubmissionChanged(GONE)
                 if graded.files != contents(found.folder):
-                    raise TaskFailed(REPLACED)
+                    raise SubmissionChanged(CHANGED)
                 if seconds is None:
                     stored = refresh_late_penalty(self.course, graded.submission, graded.notebook)
                     reused = stored is not None
@@ -167,6 +170,8 @@ class Grading:
             reason = stored.reason
         except (GradebookError, ClusterError):
             raise  # the next submission would fail in the same way
+        except SubmissionChanged as change:
+            reason = f'not graded, {change}'
         except TaskFailed as error:
             logging.error('%s: %s\n%s', which, error, error.trace)
             reason = f'not graded, the grader failed: {error}'

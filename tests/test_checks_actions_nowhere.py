@@ -38,6 +38,22 @@ class RaisesInExecute(MoveArmServer):
         raise KeyError('joint3')
 
 
+class ReportsNumbers(MoveArmServer):
+    def report(self, handle):
+        handle.publish_feedback(self.position)
+
+
+class ReportsAResult(MoveArmServer):
+    def report(self, handle):
+        handle.publish_feedback(MoveArm.Result(position=self.position))
+
+
+class SucceedsWithTheResult(MoveArmServer):
+    def finish(self, handle):
+        self.is_moving = False
+        handle.succeed(MoveArm.Result(position=self.position))
+
+
 class SleepsWithAsyncio(MoveArmServer):
     async def execute(self, handle):
         await asyncio.sleep(0.05)
@@ -59,6 +75,10 @@ class WaitsForItsOwnTimer(MoveArmServer):
         self.create_rate(20).sleep()
 
 
+NO_FEEDBACK = (
+    r'the execute callback raised an exception without a text, such as a TypeError: give '
+    r'publish_feedback a MoveArm\.Feedback\(position=…, remaining=…\); fix that first'
+)
 NOWHERE = [
     (
         ReturnsTrue,
@@ -70,6 +90,12 @@ NOWHERE = [
         RaisesInExecute,
         'the execute callback raised an exception .*joint3.*; fix that first, and run again the '
         'cell that starts or builds the node: the callback ended there',
+    ),
+    (ReportsNumbers, NO_FEEDBACK),
+    (ReportsAResult, NO_FEEDBACK),
+    (
+        SucceedsWithTheResult,
+        r'so call it without an argument, and return the result: .*MoveArm\.Result\(.*\); fix',
     ),
     (SleepsWithAsyncio, 'no running event loop.*, so wait without asyncio, .*; fix that first, '),
     (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),

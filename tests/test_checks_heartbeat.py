@@ -54,7 +54,9 @@ def look(monkeypatch):
     def look(fake, *send):
         monkeypatch.setattr(heartbeat, 'Stopwatch', fake.stopwatch)
         monkeypatch.setattr(heartbeat, 'wait_for_turn', fake.wait_for_turn)
-        beats = heartbeat.Heartbeat(fake, SimpleNamespace(received=fake.received))
+        beats = heartbeat.Heartbeat(
+            fake, SimpleNamespace(received=fake.received, publishers=lambda: ())
+        )
         return 'goes on' if beats.goes_on(*send) else beats.doubt
 
     return look

@@ -1,6 +1,7 @@
 """`./course collect`: what it prints, and which folders it takes."""
 
 import os
+from datetime import UTC, datetime
 
 import nbformat
 import pytest
@@ -9,8 +10,10 @@ from course_maker import TOY
 
 from grader.__main__ import main
 from grader.collect.collect import NEW, collect
+from grader.common.dates import date_of
 from grader.common.errors import CourseError
 from grader.course import Course
+from grader.notebook.submission import TIMESTAMP
 
 
 def test_collect_prints_rows_of_files_and_exits_with_1_if_one_was_not_taken(
@@ -35,6 +38,29 @@ def test_collect_prints_rows_of_files_and_exits_with_1_if_one_was_not_taken(
     assert '\\x1b[31mred.ipynb  named after no assignment: expected STUDENT_ASSIGNMENT' in out
     assert 'photos/0.png and 4 more  neither a notebook nor Python' in out
     assert out.splitlines()[-2:] == ['1 there already; 1 not taken.', 'Next: ./course grade']
+
+
+def test_a_time_that_was_not_known_before_is_added_and_a_known_one_stays(course, came_in, capsys):
+    paper = came_in / f'ada_{TOY}.ipynb'
+    write(paper, 'x')
+    stamp = course.folder('submitted', 'ada', TOY) / TIMESTAMP
+    said = []
+    for seconds, options in (
+        (1_700_000_000, []),
+        (1_700_000_000, ['--file-times']),
+        (1_700_000_000, ['--file-times']),
+        (1_700_009_000, ['--file-times']),
+    ):
+        os.utime(paper, (seconds, seconds))
+        assert main(['collect', str(came_in), *options], course=course) == 0
+        said.append(capsys.readouterr().out.splitlines()[1].split('  ')[-1])
+    assert said == [
+        'new',
+        'there already: when it was handed in was not known before',
+        'there already: nothing new',
+        'there already: the time that counts is 2023-11-14 22:13:20',
+    ]
+    assert date_of(stamp) == datetime(2023, 11, 14, 22, 13, 20, tzinfo=UTC)
 
 
 def test_a_missing_or_empty_folder_to_collect_is_reported(course, tmp_path, capsys):

@@ -94,6 +94,11 @@ class Raises(MoveArmServer):
         raise KeyError('joint3')
 
 
+class ReportsNumbers(MoveArmServer):
+    def report(self, handle):
+        handle.publish_feedback(self.position)
+
+
 class NeverExecutes(MoveArmServer):
     def make_server(self, **callbacks):
         return super().make_server(handle_accepted_callback=lambda handle: None, **callbacks)
@@ -107,6 +112,7 @@ class NeverEnds(MoveArmServer):
 FAULTS = [
     (Forgets, 'nobody has set how the goal ended', 'goal_handle.succeed()'),
     (Raises, 'the execute callback raised', 'a moment ago'),
+    (ReportsNumbers, 'the execute callback raised', 'MoveArm.Feedback(position=…, remaining=…)'),
     (NeverExecutes, 'a goal does not go on', 'a goal that was accepted for at least'),
     (NeverEnds, 'a goal does not go on', 'a goal that was executing for at least'),
 ]
@@ -117,7 +123,7 @@ def test_a_goal_that_ends_wrongly_or_not_at_all_is_reported(node_class, title, w
     run(node_class)
     sender = run(Sender)
     sender.send()
-    if node_class in (Forgets, Raises):
+    if node_class in (Forgets, Raises, ReportsNumbers):
         wait_until(sender.result.done)
     said, titles = told()
     assert titles == [title]

@@ -28,8 +28,8 @@ def due(course, *arguments):
 @pytest.mark.parametrize(
     ('text', 'hour', 'offset_hours'),
     [
-        ('2026-11-30', (23, 59), 8),
-        ('20261130', (23, 59), 8),
+        ('2026-11-30', (23, 59, 59), 8),
+        ('20261130', (23, 59, 59), 8),
         ('2026-11-30 18:00', (18, 0), 8),
         ('2026-11-30T18:00', (18, 0), 8),
         ('2026-11-30T18:00+01:00', (18, 0), 1),
@@ -48,7 +48,7 @@ def test_a_date_means_the_end_of_the_day_and_times_are_local_by_default(
         ('2026-03-29 02:30', (3, 29, 1, 30)),  # no clock shows it: 02:30 CET is 03:30 CEST
         ('2026-10-25 02:30', (10, 25, 1, 30)),  # it comes twice
         ('2026-10-25 02:30+02:00', (10, 25, 0, 30)),
-        ('2026-10-25', (10, 25, 22, 59)),
+        ('2026-10-25', (10, 25, 22, 59, 59)),
     ],
 )
 def test_an_ambiguous_time_at_a_clock_change_is_the_later_one(course, monkeypatch, text, utc):
@@ -65,7 +65,7 @@ def test_a_due_date_and_an_extension_can_be_set_and_removed(course, capsys):
     assert '  extended for 小明 O"Neil until 2026-12-03 12:00 CST' in said
     assert 'who has not handed it in yet: check that the name is right' in said
     found = deadlines(course.gradebook, course.assignments())
-    assert found.due == {TOY: datetime(2026, 11, 30, 15, 59)}
+    assert found.due == {TOY: datetime(2026, 11, 30, 15, 59, 59)}
     assert found.extended == {(TOY, '小明 O"Neil'): datetime(2026, 12, 3, 4, 0)}
 
     assert due(course, TOY, 'none', '--student', '小明 O"Neil') == 0
@@ -84,7 +84,7 @@ def test_setting_a_date_keeps_the_rest_of_the_file_as_written(course):
     assert due(course, TOY, '2026-01-11') == 0
     assert path.read_text() == (
         '# agreed with the dean\n[late]\nper_day = 0.10  # 10 %\n\n[due]\n'
-        f'{TOY} = 2026-01-11T23:59:00+08:00\n'
+        f'{TOY} = 2026-01-11T23:59:59+08:00\n'
     )
 
 

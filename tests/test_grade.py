@@ -1,6 +1,8 @@
 import os
+import shutil
 import tempfile
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from course_maker import TOY, answered, executed, submit
@@ -9,13 +11,16 @@ from stand_in import stand_in
 
 from grader.__main__ import main
 from grader.cli.demo import demo
+from grader.collect.submission_folders import MAX_DEPTH
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grade import MOST_IN_VAIN, grade_all
+from grader.grading import CHANGED, GONE
 from grader.judging import task
 from grader.judging.execute import Execution
 from grader.notebook.restore import KEY
 from grader.report.progress_table import print_rows
+from grader.storage.pipeline import is_undecided
 from grader.storage.records import graded_notebook, records
 from grader.storage.submitted import find_submissions
 
@@ -166,6 +171,24 @@ def test_few_are_graded_again_alone_if_none_of_them_can_be_decided(course):
     assert again == [f'ada{number}' for number in range(MOST_IN_VAIN)]
 
 
+def test_the_first_result_stays_if_the_second_grading_fails(course):
+    submit(course, 'ada', answered(course, f'{RIGHT}  # busy 1'))
+    submit(course, 'eve', answered(course, f'{RIGHT}  # busy 1'))
+    rows = []
+    for row in grade_all(course, find_submissions(course)):
+        rows.append(row)
+        if len(rows) == 2:  # both are graded once
+            shutil.rmtree(course.folder('submitted', 'ada', TOY))
+            deep = Path(*['deep'] * (MAX_DEPTH + 1))
+            (course.folder('submitted', 'eve', TOY) / deep).mkdir(parents=True)
+    first, again = rows[:2], rows[2:]
+    assert [row.student_id for row in again] == ['ada', 'eve']
+    assert [row.stored for row in again] == [row.stored for row in first]
+    assert again[0].reason.endswith(f'; then not graded, {GONE}')
+    assert 'folders in each other' in again[1].reason
+    assert is_undecided(graded_notebook(course, 'ada', TOY))
+
+
 def test_a_check_whose_points_a_person_gave_is_not_tried_again(course):
     submit(course, 'ada', answered(course, f'{RIGHT}  # busy 9', explained='so'))
     list(grade_all(course, find_submissions(course)))
@@ -276,6 +299,6 @@ def test_no_result_is_stored_if_the_submission_changed_during_grading(course, mo
     row = rows_of(course)['ada']
     assert 'x + 1' in path.read_text()
     assert row.stored is None
-    assert 'handed in again meanwhile' in row.reason
+    assert row.reason == f'not graded, {CHANGED}'
     monkeypatch.setattr(task, 'execute_exercises', looked)
     assert rows_of(course)['ada'].stored.score == 0.0

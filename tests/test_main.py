@@ -111,6 +111,27 @@ def test_an_emptied_database_is_reported_as_damaged_after_grading(tmp_path, caps
     assert (course.gradebook / 'scores.csv').read_bytes() == table
 
 
+def test_a_database_that_is_gone_is_not_replaced_by_one_without_scores(tmp_path, capsys):
+    course = make_course(tmp_path)
+    assert main(['release'], course=course) == 0
+    submit(course, 'ada', b'')
+    assert main(['grade'], course=course) == 0
+    assert main(['scores'], course=course) == 0
+    table = (course.gradebook / 'scores.csv').read_bytes()
+    backup = back_up(course)
+    course.database.unlink()
+    capsys.readouterr()
+    for verb in ('scores', 'feedback', 'grade'):
+        assert main([verb], course=course) == 1
+        said = capsys.readouterr().err
+        assert f"{course.database} is gone. Put a backup in its place with cp '{backup}'" in said
+    assert not course.database.exists()
+    assert (course.gradebook / 'scores.csv').read_bytes() == table
+    shutil.copy(backup, course.database)
+    assert main(['scores'], course=course) == 0
+    assert (course.gradebook / 'scores.csv').read_bytes() == table
+
+
 def test_an_empty_database_before_anything_is_graded_is_made_anew(tmp_path, capsys):
     course = make_course(tmp_path)
     course.gradebook.mkdir()

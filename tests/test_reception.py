@@ -223,7 +223,7 @@ MODULES = {
     'release_page': results,
 }
 STEPS = {
-    '_prepared': (KeyError('double'), FAILED, 'not graded, the grader failed: KeyError: '),
+    '_prepared': (KeyError('double'), FAILED, 'the grader failed: KeyError: '),
     'put_in_place': (KeyError('\x1b'), REFUSED, 'the grader failed: KeyError: '),
     'write_page': (KeyError('\x1b'), GRADED, 'no page can be made: the grader failed: Key'),
     'release_page': (OSError(5, 'I/O'), GRADED, 'no page can be made: the grader failed: OSE'),

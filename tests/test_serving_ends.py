@@ -10,12 +10,15 @@ from pathlib import Path
 
 import pytest
 import quick_serve
-from course_maker import TOY, released_course
+from course_maker import TOY, released_course, with_own_database
 from quick_serve import RIGHT, WRONG, exchange_in, grade_here, hand_in, page_of, serve_here
 
-from grader.grading import REPLACED as REPLACED_MEANWHILE
+from grader.__main__ import main
+from grader.common.errors import CourseError
+from grader.grading import CHANGED
 from grader.serving.queue import FAILED, GRADED, REFUSED, REPLACED, WAITING
 from grader.serving.queue_file import open_queue_to_read
+from grader.storage.deadlines import FILE
 from grader.storage.records import records
 
 
@@ -117,8 +120,36 @@ def test_grade_may_run_beside_serve(tmp_path, inbound):
     serve_here(course, inbound)  # some entries may not have been looked at yet
     assert others
     refused = {row.reason for row in others if not row.stored}
-    assert refused <= {f'not graded, the grader failed: {REPLACED_MEANWHILE}'}
+    assert refused <= {f'not graded, {CHANGED}'}
     same_as_undisturbed(course, inbound, 6, latest)
+
+
+def test_serving_pauses_while_the_due_dates_can_not_be_read(released, tmp_path, inbound, capsys):
+    course = with_own_database(released, tmp_path)
+    hand_in(course, inbound, 'ada', RIGHT)
+    path, said = course.gradebook / FILE, []
+
+    def say(line):
+        said.append(line.partition(':')[0])
+        if said[1:] == ['graded']:
+            path.write_text('foo = ')
+            hand_in(course, inbound, 'bob', RIGHT)
+        if said[-1] == 'paused':
+            assert main(['serve', '--status'], course=course) == 0
+            path.write_text('')
+        if said.count('graded') == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        serve_here(course, inbound, once=False, say=say)
+    assert sorted(said[2:4]) == ['paused', 'taken in']
+    assert said[4:] == ['grading goes on', 'graded']
+    status = capsys.readouterr().out
+    assert 'Paused: nothing is graded until this is corrected' in status
+    assert f'{path}: Invalid value' in status
+    path.write_text('foo = ')
+    with pytest.raises(CourseError, match='Invalid value'):
+        serve_here(course, inbound)
 
 
 @pytest.mark.slow

@@ -20,6 +20,7 @@ from grader.collect.submission_folders import (
     digests,
     put_atomically,
     put_numbered,
+    timestamp,
     within,
     writer,
 )
@@ -138,7 +139,7 @@ def store_submission(
         return NEW, ''
     there, when = contents(place), date_of(place / TIMESTAMP)
     if came == there:
-        return KNOWN, 'nothing new'
+        return KNOWN, _note_time(place / TIMESTAMP, each.handed_in, when)
     both = (each.handed_in, when) if each.handed_in and when else None
     if not (both and both[0] > both[1]) and came in contents_of_earlier(shelf):
         return KNOWN, 'the same as an earlier one, which a later one has replaced'
@@ -157,6 +158,16 @@ def store_submission(
         writer(files, each.handed_in, secret=each.secret, left_out=each.left_out), place
     )
     return AGAIN, f'the one before and its grade are kept in {_path_in_messages(shelf, course)}'
+
+
+def _note_time(path: Path, came: datetime | None, stored: datetime | None) -> str:
+    """Write when a submission was handed in if that was not known; return which time counts."""
+    if came is None or came == stored:
+        return 'nothing new'
+    if stored:
+        return f'the time that counts is {stored:%Y-%m-%d %H:%M:%S}'
+    write_whole(path, timestamp(came))
+    return 'when it was handed in was not known before'
 
 
 def _files(each: MatchedFile) -> Iterator[tuple[str, Path]]:

@@ -89,6 +89,11 @@ def contents_of_earlier(shelf: Path) -> list[dict[str, bytes]]:
     return [contents(folder, read_once=True) for folder in shelf.glob('*/submitted')]
 
 
+def timestamp(handed_in: datetime) -> str:
+    """Return a time in UTC as nbgrader writes it."""
+    return handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
+
+
 def writer(
     files: Mapping[str, Path],
     handed_in: datetime | None,
@@ -110,8 +115,7 @@ def writer(
         if left_out:
             (folder / LEFT_OUT).write_text('\n'.join(left_out) + '\n', encoding='utf-8')
         if handed_in:
-            time = handed_in.strftime('%Y-%m-%d %H:%M:%S.%f UTC')
-            (folder / TIMESTAMP).write_text(time, encoding='ascii')
+            (folder / TIMESTAMP).write_text(timestamp(handed_in), encoding='ascii')
         if secret:
             shutil.copyfile(secret, folder / SECRET)
 

@@ -6,7 +6,7 @@ RECORDED = 'recorded'
 """Instead of a seed: the seed of a submission's stored result."""
 PLATFORMS = ('canvas', 'moodle')
 """Course platforms that import scores: `grader/passback/write.py` has a table for each."""
-END_OF_DAY = time(23, 59)
+END_OF_DAY = time(23, 59, 59)
 """The time that a date without a time gets."""
 
 

@@ -32,5 +32,9 @@ class TaskFailed(CourseError):
         self.trace = trace
 
 
+class SubmissionChanged(CourseError):
+    """The files of a submission are not those that were judged: its result is not stored."""
+
+
 class ClusterError(CourseError):
     """The machines that grade are not usable, or gone: the run ends, and can go on later."""

@@ -40,14 +40,15 @@ def run_ahead(
     """
     under_way: deque[tuple[Item, Future[Result]]] = deque()
     for item in items:
-        under_way.append((item, _started(start, item)))
+        under_way.append((item, started(start, item)))
         while under_way and (len(under_way) >= at_most or under_way[0][1].done()):
             yield under_way.popleft()
     while under_way:
         yield under_way.popleft()
 
 
-def _started(start: Callable[[Item], 'Future[Result]'], item: Item) -> 'Future[Result]':
+def started(start: Callable[[Item], 'Future[Result]'], item: Item) -> 'Future[Result]':
+    """Return `start(item)`; if it raises, a future that raises the same."""
     try:
         return start(item)
     except Exception as error:

@@ -17,7 +17,7 @@ from grader.common.text import shorten, storable
 from grader.course import Course
 from grader.notebook.submission import LEFT_OUT, SECRET
 from grader.serving.inbound import Entry
-from grader.serving.queue import KEEPING, REFUSED, WAITING, Arrival, Queue
+from grader.serving.queue import KEEPING, REFUSED, UNDECIDED, WAITING, Arrival, Queue
 from grader.storage.lock import gradebook_lock
 from grader.storage.records import records
 from grader.storage.submitted import known_students
@@ -99,7 +99,7 @@ def remove_copies(course: Course, arrivals: Iterable[Arrival]) -> None:
 
 def remove_unrecorded_copies(course: Course, queue: Queue) -> None:
     """Remove copies without a row: the process was ended before it recorded them."""
-    known = {each.folder for each in queue.find(WAITING, KEEPING)}
+    known = {each.folder for each in queue.find(WAITING, KEEPING, UNDECIDED)}
     for left in (course.gradebook / FOLDER).glob('*'):
         if left.name not in known:
             shutil.rmtree(left)

@@ -8,9 +8,11 @@ from grader.common.text import printable, storable
 
 WAITING, GRADING, GRADED = 'waiting', 'grading', 'graded'
 KEEPING, REPLACED, REFUSED, FAILED = 'being kept', 'replaced', 'refused', 'failed'
+UNDECIDED = 'undecided'
 """States of an arrival; a person has to look at one that is refused or has failed.
 
 One `being kept` is not graded, because a later one is; it has yet to be stored beside that one.
+In an `undecided` one, a check could not decide: it is graded once more when there is time.
 """
 
 
@@ -154,9 +156,9 @@ class Queue:
         """Return when gradings of each student and assignment started, in order."""
         found: dict[tuple[str, str], list[float]] = {}
         rows = self._database.execute(
-            'SELECT student_id, assignment, started FROM arrivals WHERE state IN (?, ?) '
+            'SELECT student_id, assignment, started FROM arrivals WHERE state IN (?, ?, ?) '
             'ORDER BY started',
-            (GRADING, GRADED),
+            (GRADING, GRADED, UNDECIDED),
         )
         for student, assignment, started in rows:
             found.setdefault((student, assignment), []).append(started)

@@ -17,10 +17,11 @@ from grader.serving.queue_file import open_queue
 from grader.serving.reception import take_in_new_entries
 from grader.serving.removed_entries import RemovedEntries
 from grader.serving.results import grade_undecided, store_finished
-from grader.serving.state import ServingState
+from grader.serving.state import ServingState, check_for_pause
 from grader.serving.steps import start_gradings, store_replaced
 from grader.storage.backups import recover_and_back_up
 from grader.storage.database import share_engine
+from grader.storage.deadlines import deadlines
 from grader.workers.backend import Backend
 
 LOOK_SEC = 0.25
@@ -58,17 +59,18 @@ def serve(
         grading = Grading(course, backend, isolated, trust_students=trust_students)
         serving = ServingState(course, queue, grading, inbound, feedback, say, seen=queue.seen())
         removed = RemovedEntries(serving)
+        deadlines(course.gradebook)  # raises now if it can't be read
         while True:
-            events = [
-                take_in_new_entries(serving),
-                start_gradings(serving),
-                store_finished(serving),
-                store_replaced(serving),
-            ]
+            events = [take_in_new_entries(serving), not once and check_for_pause(serving)]
+            if not serving.pause:
+                steps = start_gradings, store_finished, store_replaced
+                events += [step(serving) for step in steps]
             if any([*events, removed.forget()]):
                 changed(queue)
             elif serving.rounds.is_under_way:
                 continue
+            elif serving.pause:
+                time.sleep(LOOK_SEC)
             elif serving.running:
                 wait(serving.running, timeout=LOOK_SEC, return_when=FIRST_COMPLETED)
             elif grade_undecided(serving):

@@ -5,12 +5,14 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from grader.common.errors import CourseError
+from grader.common.text import printable
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment
 from grader.report.feedback import FeedbackPage, page_exporter
 from grader.serving.queue import Arrival, Queue
 from grader.serving.rounds import Rounds
-from grader.storage.deadlines import FILE
+from grader.storage.deadlines import FILE, deadlines
 from grader.storage.submitted import SubmissionFolder
 
 
@@ -30,10 +32,26 @@ class ServingState:
     """When an entry of each owner was last taken in from the inbound folder, in Unix time."""
     rounds: Rounds = field(default_factory=Rounds)
     running: dict['Future[GradedSubmission]', Arrival] = field(default_factory=dict)
-    undecided: dict[tuple[str, str], Arrival] = field(default_factory=dict)
-    """Graded, but a check could not decide: graded once more when there is nothing else to do."""
     prepared: dict[str, tuple[object, PreparedAssignment]] = field(default_factory=dict)
     exporter: FeedbackPage = field(default_factory=page_exporter)
+    pause: str = ''
+    """Why nothing is graded now."""
+
+
+def check_for_pause(serving: ServingState) -> bool:
+    """Pause while the due dates can't be read, for no score would be right; return any change.
+
+    It ends as soon as they can be read again.
+    """
+    before, serving.pause = serving.pause, ''
+    try:
+        deadlines(serving.course.gradebook)
+    except CourseError as error:
+        serving.pause = str(error)
+    if serving.pause == before:
+        return False
+    serving.say(f'paused: {printable(serving.pause)}' if serving.pause else 'grading goes on')
+    return True
 
 
 def run(serving: ServingState, arrival: Arrival) -> None:

@@ -8,10 +8,20 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.common.text import printable, visible
 from grader.course import Course
-from grader.serving.queue import FAILED, GRADED, GRADING, REFUSED, WAITING, Arrival, Queue
+from grader.serving.queue import (
+    FAILED,
+    GRADED,
+    GRADING,
+    REFUSED,
+    UNDECIDED,
+    WAITING,
+    Arrival,
+    Queue,
+)
 from grader.serving.serve import LOCK
 from grader.serving.turns import reason_to_wait
 from grader.storage.deadlines import Deadlines, deadlines
@@ -43,20 +53,29 @@ def sections(
     If `shows_all`, submissions that wait for a person are listed completely; otherwise a line says
     where they are listed.
     """
-    rules = (deadlines(course.gradebook) or Deadlines()).resubmissions
+    try:
+        rules = (deadlines(course.gradebook) or Deadlines()).resubmissions
+    except CourseError as error:
+        rules = Deadlines().resubmissions
+        yield 'Paused: nothing is graded until this is corrected', [str(error)]
     starts = queue.starts()
     done = queue.find(GRADED, last=LAST)
-    counts = queue.counts()
+    failed = [each for each in queue.find(FAILED) if not _is_graded_since(course, each)]
+    counts = {**queue.counts(), FAILED: len(failed)}
     yield _summary(done, counts), []
     for state, heading in (
         (GRADING, _BEING_GRADED),
         (WAITING, 'Waiting'),
         (REFUSED, 'Not taken: a person should look'),
-        (FAILED, 'Not graded: ./course grade tries again'),
+        (FAILED, 'Not graded, or not to the end: ./course grade tries again'),
+        (UNDECIDED, 'A check could not decide: graded once more when there is time'),
         (GRADED, 'Graded last'),
     ):
         is_whole = shows_all and state in FOR_A_PERSON
-        found = queue.find(state, last=None if is_whole else SHOWN)
+        if state == FAILED:
+            found = failed if is_whole else failed[-SHOWN:]
+        else:
+            found = queue.find(state, last=None if is_whole else SHOWN)
         more, lines = counts.get(state, 0) - len(found), []
         if more > 0 and state in FOR_A_PERSON:
             lines.append(f'{more:,} more before these: ./course serve --status')
@@ -92,7 +111,7 @@ def write_status_page(course: Course, queue: Queue) -> Path:
 
 
 def _summary(done: list[Arrival], counts: Mapping[str, int]) -> str:
-    said = ', '.join(f'{number} {state}' for state, number in sorted(counts.items()))
+    said = ', '.join(f'{number} {state}' for state, number in sorted(counts.items()) if number)
     if not done:
         return f'{said or "Nothing has come in"}.'
     seconds = sorted(each.ended - each.arrived for each in done)
@@ -101,6 +120,15 @@ def _summary(done: list[Arrival], counts: Mapping[str, int]) -> str:
         f'{said}. From arrival to feedback, for the last {len(done)}: '
         f'half within {half:.1f} s, 95 % within {most:.1f} s.'
     )
+
+
+def _is_graded_since(course: Course, each: Arrival) -> bool:
+    """Whether ./course grade has graded and decided a submission that this process could not."""
+    graded = course.folder('autograded', *each.submission_key) / f'{each.assignment}.ipynb'
+    try:
+        return graded.stat().st_mtime > each.ended and '"ungraded"' not in graded.read_text()
+    except OSError:
+        return False
 
 
 def _line(each: Arrival, waits: str) -> str:

@@ -12,7 +12,7 @@ from grader.common.db_url import is_in_postgresql
 from grader.course import Course
 from grader.storage.database import has_database, wait_until_free
 from grader.storage.dumps import dump
-from grader.storage.failures import raise_gradebook_errors
+from grader.storage.failures import backups_of, raise_gradebook_errors
 from grader.storage.gradebook import recover
 
 KEPT = 10
@@ -37,7 +37,7 @@ def back_up(course: Course) -> Path | None:
     """
     if not has_database(course):
         return None
-    folder = course.gradebook / 'backups'
+    folder = backups_of(course)
     if is_in_postgresql(course.db_url):
         return dump(course.db_url, folder, KEPT, partial(print, file=sys.stderr))
     folder.mkdir(exist_ok=True)

@@ -45,21 +45,23 @@ def make_ready(course: Course) -> None:
 
 
 def has_database(course: Course) -> bool:
-    """Whether the database exists."""
+    """Whether the database exists. Raises GradebookError if it is gone, and has backups."""
     if is_in_postgresql(course.db_url):
         return postgresql.has_tables(course.db_url)
+    _refuse_gone(course)
     return course.database.exists()
 
 
 def make_database(course: Course) -> None:
     """Make the database if there is none, under another name: nbgrader can't repair half of one.
 
-    Raises GradebookError if its file exists and is empty although there were results before.
+    Raises GradebookError if its file is empty or gone although there were results before.
     """
     course.gradebook.mkdir(parents=True, exist_ok=True)
     if is_in_postgresql(course.db_url):
         postgresql.make_tables(course.db_url)
         return
+    _refuse_gone(course)
     _refuse_emptied(course)
     if course.database.exists() and course.database.stat().st_size:
         return
@@ -70,13 +72,17 @@ def make_database(course: Course) -> None:
     os.replace(aside, course.database)
 
 
+def _refuse_gone(course: Course) -> None:
+    if not course.database.exists() and failures.newest_backup(course):
+        raise GradebookError(failures.gone_message(course))
+
+
 def _refuse_emptied(course: Course) -> None:
     """Raise GradebookError if the file lost its content: a new database would have no scores."""
     if not course.database.exists() or course.database.stat().st_size:
         return
-    backups = (course.gradebook / 'backups').glob('*.db')
     graded = course.folder('autograded', '', '').glob('*/*/*.ipynb')
-    if any(backups) or any(graded):
+    if failures.newest_backup(course) or any(graded):
         raise GradebookError(failures.damaged_message(course, 'the file is empty'))
 
 
@@ -104,6 +110,7 @@ def wait_until_free(course: Course, say: Callable[[str], None] = print_at_once) 
     if is_in_postgresql(course.db_url):
         postgresql.wait_until_available(course.db_url, failures.TIMEOUT_SEC, say)
         return
+    _refuse_gone(course)
     _refuse_emptied(course)
     deadline, said = time.monotonic() + failures.TIMEOUT_SEC, False
     with closing(sqlite3.connect(course.database, timeout=0, isolation_level=None)) as database:

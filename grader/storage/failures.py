@@ -4,6 +4,7 @@ import errno
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from grader.common.db_url import is_in_postgresql
 from grader.common.errors import DISK_FULL, CourseError, GradebookError
@@ -20,15 +21,34 @@ _NOT_WRITTEN = {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
 
+def backups_of(course: Course) -> Path:
+    """Return the folder with copies of the database."""
+    return course.gradebook / 'backups'
+
+
+def newest_backup(course: Course) -> Path | None:
+    """Return the newest copy of the database, if there is one."""
+    return max(backups_of(course).glob('*.db'), default=None)
+
+
+def gone_message(course: Course) -> str:
+    """Return the message for a database that is not there, but was backed up before."""
+    return (
+        f"{course.database} is gone. Put a backup in its place with cp '{newest_backup(course)}' "
+        f"'{course.database}', then run the same command again. To begin without any scores, also "
+        f'of those given by hand, move {backups_of(course)} away first.'
+    )
+
+
 def damaged_message(course: Course, why: str) -> str:
     """Return the message for a database that lost its content, and how to restore it."""
     found = f'{course.database} is damaged ({why}).'
-    backups = course.gradebook / 'backups'
-    newest = max(backups.glob('*.db'), default=None)
+    newest = newest_backup(course)
     if newest is None:
         return (
-            f'{found} There is no backup in {backups}: put a copy of yours in its place. Without '
-            'one, move the file away and run ./course grade: what was scored by hand is lost then.'
+            f'{found} There is no backup in {backups_of(course)}: put a copy of yours in its '
+            'place. Without one, move the file away and run ./course grade: what was scored by '
+            'hand is lost then.'
         )
     return (
         f"{found} Put a backup in its place with cp '{newest}' '{course.database}', remove "

@@ -10,7 +10,7 @@ from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_progress import is_under_way
 from my_robot_basics.checks.arm_results import expect_result, is_near
 from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
-from my_robot_basics.checks.cancel_moments import just_after_half_second
+from my_robot_basics.checks.cancel_moments import moment_to_cancel
 from my_robot_basics.checks.open_action import BLOCKED
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad, goal
@@ -37,9 +37,8 @@ def expect_cancels(
     *,
     speed: float,
     start: Pose = (0.0, 0.0),
-    after: float = 0.4,
 ) -> None:
-    """Cancel a goal near the part `after` of its move, and expect the arm to stop within 0.2 s.
+    """Cancel a goal in the middle of its move, and expect the arm to stop within 0.2 s.
 
     Its status has to be canceled, its result has to hold where the arm stopped, and the next move
     has to begin there and must not be stopped, too. Raises CheckFailed.
@@ -48,7 +47,8 @@ def expect_cancels(
     def stops(arm: WatchedArm) -> None:
         sent = arm.send(arm.goal(position, speed=speed))
         wanted_sec = far_rad(arm.start, position) / sent.goal.speed
-        arm.time.let_pass(sent.is_over, seconds=just_after_half_second(after * wanted_sec))
+        cancel_sec = moment_to_cancel(wanted_sec, is_driven=arm.time.is_driven)
+        arm.time.let_pass(sent.is_over, seconds=cancel_sec)
         expect(
             not sent.is_over(),
             expected=f'a move that takes {wanted_sec:.1f} s',

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording
 from my_robot_basics.checks.topics import Topic
+from my_robot_basics.exchange import node_troubles
 from my_robot_basics.exchange.asking import wait_for_turn
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 from my_robot_basics.graph.stop_reasons import what_raised
@@ -30,6 +31,8 @@ LONG_SEC, LONG_LOOKS = 2.5, 10
 """A pause that ends after so many seconds of wall time and so many answers is in doubt."""
 MOST_TIMES = 4.0
 """Such a pause is fine if it is less than so many times as long as a pause after it."""
+NAMED_LOOKS = 3
+"""After so many answers, the notebook is asked which line of a callback blocks the node."""
 LOOK_SEC = 0.1
 """How long to wait for a beat before the notebook is asked again, in seconds."""
 COUNTS_SEC, RATE_SEC = 2.0, 2.0
@@ -68,6 +71,8 @@ class Heartbeat:
         self._watcher, self._recorder = watcher, recorder
         self.doubt: type[CheckFailed] = CheckFailed
         """What to raise if `goes_on` is False: Starved if the machine may be to blame."""
+        self.blocking_line = ''
+        """The line of a callback during the last long pause, if there was one."""
 
     def goes_on(self, send: Callable[[], None] = lambda: None) -> bool:
         """Whether the node counts now, without a silence.
@@ -117,6 +122,9 @@ class Heartbeat:
             # a beat that comes during this request is received by the next spin
             wait_for_turn()
             looks += 1
+            if looks == NAMED_LOOKS:  # at the end of the pause, the callback may have returned
+                lines = map(node_troubles.blocking_line, self._recorder.publishers())
+                self.blocking_line = next(filter(None, lines), self.blocking_line)
 
 
 def record(watcher: Watcher, beats: Recorder) -> Recording | None:

@@ -18,7 +18,7 @@ from my_robot_basics.checks.elbow_up import (
 )
 from my_robot_basics.checks.heeded_message import expect_heeds_reachable
 from my_robot_basics.checks.left_over import why_left_over
-from my_robot_basics.checks.one_more import publish_one_more
+from my_robot_basics.checks.one_more import expect_alive_when_released, publish_one_more
 from my_robot_basics.checks.servers import Server
 from my_robot_basics.checks.services import Service
 from my_robot_basics.checks.solutions import is_for, request, solve
@@ -149,7 +149,7 @@ def expect_never_blocks(
     while watch.wall_sec() < slow_sec and not server.holds_many():
         server.expect_nothing(made_of=is_elbow_up, hint=lambda each: why_other(server, each))
     held = [first, second, *publish_one_more(server, *second)]
-    server.release()
+    expect_alive_when_released(server, *first)
     expect_each_elbow_up(server, *held)
     _let_all_be_answered(server)
     server.stop()

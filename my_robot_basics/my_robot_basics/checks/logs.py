@@ -94,7 +94,7 @@ class Log(NodeLog):
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self.node_name}',
                 seen=self.shown('INFO'),
-                hint=self._why_late(is_answered) or self._why_unanswered(wanted),
+                hint=self.why_stopped() or self._why_late(is_answered) or self._why_other(wanted),
                 cause='the INFO log lacks the angles of a target in reach',
             )
         before = self.count('WARN') if may_lag else 0
@@ -164,10 +164,7 @@ class Log(NodeLog):
         self._since_ns = since_ns
         return angles.ONE_LATE if is_late else ''
 
-    def _why_unanswered(self, wanted: Sequence[float]) -> str:
-        why = '' if self.has('INFO') else what_stopped([self.node_name])
-        if why:
-            return f'{why}; fix that first'
+    def _why_other(self, wanted: Sequence[float]) -> str:
         if unreadable := answers.why_unreadable(wanted, self.texts('INFO')):
             return unreadable
         if self._answer and not angles.missing(self._answer, self.numbers()):

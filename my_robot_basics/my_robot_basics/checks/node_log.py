@@ -16,6 +16,7 @@ from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
 from my_robot_basics.graph.not_running import why_not_running
+from my_robot_basics.graph.stop_reasons import what_has_not_returned, what_stopped
 from my_robot_basics.graph.watcher import Watcher
 
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
@@ -171,6 +172,12 @@ class NodeLog:
         if any(other.endswith(self.node_name) for other in others):
             return f'the name {name} is right, so leave the namespace out of super().__init__(…)'
         return f"if that is yours, write super().__init__('{name}'), letter for letter"
+
+    def why_stopped(self) -> str:
+        """A clause on a callback that has not returned, or raised before any INFO; or ''."""
+        names = [self.node_name]
+        why = what_has_not_returned(names) if self.has('INFO') else what_stopped(names)
+        return f'{why}; fix that first' if why else ''
 
     def texts(self, level: str) -> list[str]:
         """The texts of a level since the mark, in order."""

@@ -1,9 +1,14 @@
-"""One more target for a client of `/solve_ik` that lets targets wait: it has to keep them all."""
+"""One more target for a client of `/solve_ik`, if it lets targets wait or seems to block."""
 
 from geometry_msgs.msg import Point
 
 from my_robot_basics.checks.elbow_up import is_elbow_up, why_other
 from my_robot_basics.checks.servers import Server
+
+TAKES_LONG = (
+    'the function that gets the answer takes too long, and no callback runs meanwhile: let it '
+    'only publish, without a sleep or a wait'
+)
 
 
 def publish_one_more(server: Server, x: float, y: float) -> list[tuple[float, float]]:
@@ -19,3 +24,18 @@ def publish_one_more(server: Server, x: float, y: float) -> list[tuple[float, fl
     server.publish(Point(x=-x, y=-y))  # as far away, so within reach, too
     server.expect_nothing(made_of=is_elbow_up, hint=lambda each: why_other(server, each))
     return [(-x, -y)]
+
+
+def expect_alive_when_released(server: Server, x: float, y: float) -> None:
+    """Send the responses that were held back; the client continues to count when they arrive.
+
+    It gets the target (x, y) again if they seem to block it. Raises CheckFailed, Starved.
+    """
+
+    def send() -> None:
+        if server.holds_any():
+            server.release()
+        else:
+            server.publish(Point(x=x, y=y), anew=False)
+
+    server.expect_alive_during('answers arrive', send, hint=TAKES_LONG)

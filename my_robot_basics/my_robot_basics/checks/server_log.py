@@ -19,6 +19,10 @@ MOST_CHARACTERS = 1000
 LOG_SEC = 0.5
 """How long to wait for a log line that may explain a fault, in s of free time."""
 _RAISED = 'Error raised in execute callback: '
+_NO_TEXT = (  # the log has no class of an exception; that of publish_feedback has no text either
+    'the execute callback raised an exception without a text, such as a TypeError: give '
+    'publish_feedback a MoveArm.Feedback(position=…, remaining=…)'
+)
 _NOT_SET = 'Goal state not set'
 _NO_RESPONSE = 'did not return a GoalResponse'
 _lines: dict[str, deque[tuple[int, str]]] = {}
@@ -42,9 +46,9 @@ class ServerLog:
         said = self._find(_RAISED, since_ns)
         if not said:
             return ''
-        said = said.removeprefix(_RAISED)
+        said = said.removeprefix(_RAISED).strip()
         why = hidden.student_text(shorten(said, 100))
-        raised = f'the execute callback raised an exception ({why})'
+        raised = f'the execute callback raised an exception ({why})' if said else _NO_TEXT
         raised += hint_for_exception(said)
         # rclpy catches what this callback raises: its spin goes on, as it does for no other
         # in a package, the check starts the node, after the build

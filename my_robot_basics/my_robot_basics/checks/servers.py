@@ -77,13 +77,14 @@ class Server(HoldingServer):
         self._publisher: Publisher | None = None
         self._seen = self._known_starts = 0
 
-    def publish(self, message: Any) -> None:
-        """Publish a message that should lead to a request, without waiting for the request."""
+    def publish(self, message: Any, *, anew: bool = True) -> None:
+        """Publish a message that should lead to a request; if `anew`, `expect` begins there."""
         if self._publisher is None:
             self._publisher = Topic(self.asked_on).meet(self._watcher, type(message))
             responses.wait_for_earlier(self._watcher, self._answers.publishers())
-        self._seen = len(self._answers.received)
-        self.made.begin()
+        if anew:
+            self._seen = len(self._answers.received)
+            self.made.begin()
         self.published.append(message)
         self._publisher.publish(message)
 
@@ -169,20 +170,19 @@ class Server(HoldingServer):
         return heartbeat.record(self._watcher, self._beats)
 
     def expect_alive(self, meanwhile: str, message: Any) -> None:
-        """The node continues to count on `alive` after `message` is published: see `Heartbeat`.
+        """As `expect_alive_during` of publishing a message. Raises CheckFailed, Starved."""
+        self.expect_alive_during(meanwhile, lambda: self.publish(message))
 
-        `meanwhile`: what happens, as a clause. Raises CheckFailed if the count stands still, or
-        Starved if the machine may be the cause.
+    def expect_alive_during(
+        self, meanwhile: str, send: Callable[[], None], *, hint: str = ''
+    ) -> None:
+        """The node continues to count on `alive` after `send()`, which may be called again.
+
+        `meanwhile`: what happens, as a clause. Raises CheckFailed, Starved.
         """
-        beats = heartbeat.Heartbeat(self._watcher, self._beats)
-        if not beats.goes_on(lambda: self.publish(message)):
-            fail(
-                expected=f'the count on {self._beats.topic_name} to go on while {meanwhile}',
-                seen='it stand still',
-                hint=self._client().why_still(has_asked=self.holds_any()),
-                cause=f'the count on {self._beats.topic_name} stands still',
-                doubt=beats.doubt,
-            )
+        self._client().expect_counts(
+            self._beats, meanwhile, send, has_asked=self.holds_any, hint=hint
+        )
         self.expect_alone()
 
     def expect_alone(self) -> None:

@@ -1,10 +1,14 @@
 """Why a node does not call a service, or does not use the response: one clause for each case."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.heartbeat import Heartbeat
+from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.exchange.values import type_name
+from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
@@ -14,6 +18,8 @@ WAITS_FOR_LOST = (
     'wait for it: look at service_is_ready() before you ask'
 )
 
+_SLEEP = re.compile(r'\bsleep\w*\(')
+
 
 def waits_for_answer(name: str) -> str:
     """The advice for a node that has sent a request and blocks until it has the response."""
@@ -21,6 +27,14 @@ def waits_for_answer(name: str) -> str:
         f"it called `{name}` inside a callback and waited there: the answer can't be delivered "
         'while the callback runs, or while all threads of its executor wait like this; use '
         'call_async and add_done_callback'
+    )
+
+
+def sleeps(line: str) -> str:
+    """The advice for a node that sleeps in that line of a callback."""
+    return (
+        f'it sleeps inside a callback ({line}), and no other callback runs meanwhile: wait there '
+        'neither for a time nor for an answer, which add_done_callback receives when it comes'
     )
 
 
@@ -83,12 +97,39 @@ class WaitingClient:
             'callback)'
         )
 
-    def why_still(self, *, has_asked: bool) -> str:
-        """What to try if the node blocks."""
+    def expect_counts(
+        self,
+        beats: Recorder,
+        meanwhile: str,
+        send: Callable[[], None],
+        *,
+        has_asked: Callable[[], bool],
+        hint: str = '',
+    ) -> None:
+        """The node continues to count after `send()`, which may be called again: see `Heartbeat`.
+
+        `meanwhile`: what happens, as a clause; `has_asked()`: whether a request has come; `hint`:
+        what to try if the node does not sleep, by default by what it waits for. Raises CheckFailed
+        if the count stands still, or Starved if the machine may be the cause.
+        """
+        heart = Heartbeat(self.watcher, beats)
+        if not heart.goes_on(send):
+            fail(
+                expected=f'the count on {beats.topic_name} to go on while {meanwhile}',
+                seen='it stand still',
+                hint=self._why_still(heart.blocking_line, hint, has_asked=has_asked()),
+                cause=f'the count on {beats.topic_name} stands still',
+                doubt=heart.doubt,
+            )
+
+    def _why_still(self, line: str, hint: str, *, has_asked: bool) -> str:
         raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
-        return waits_for_answer(self.name) if has_asked else waits_for_server(self.name)
+        if _SLEEP.search(line):
+            return sleeps(student_text(line))
+        waits = waits_for_answer if has_asked else waits_for_server
+        return hint or waits(self.name)
 
 
 def _is_of_no_answer(raised: str) -> bool:

@@ -4,6 +4,36 @@ from my_robot_basics.feedback.error_words import Case
 
 OF_ACTIONS = (
     Case(
+        # Python 3.12 names the class, too
+        pattern=r"'(?:Goal|Cancel)Response' has no attribute"
+        r'|AttributeError: (?i:accept|reject)\w*(?: \(|$)',
+        to_do=', so write ACCEPT or REJECT: GoalResponse and CancelResponse have these two names',
+    ),
+    Case(
+        pattern=r'\bActionServer\.__init__\(\) takes',
+        to_do=', so write the names of all further arguments: goal_callback=…, cancel_callback=…',
+    ),
+    Case(
+        pattern=r'\bActionServer\.__init__\(\) missing',
+        to_do=', so give it the node, the type, the name and the execute callback: '
+        "ActionServer(self, MoveArm, '/move_arm', self.execute)",
+    ),
+    Case(
+        pattern=r'\bActionClient\.__init__\(\) (?:takes|missing)',
+        to_do=', so give it the node, the type and the name alone: '
+        "ActionClient(self, MoveArm, '/move_arm')",
+    ),
+    Case(
+        pattern=r"'ActionClient' object has no attribute '(?:async_)?(?:cancel_goal|get_result)",
+        to_do=', so call this method of the goal handle: it is the result of the future that '
+        'send_goal_async returns',
+    ),
+    Case(
+        pattern=r'\bServerGoalHandle\.(?:succeed|abort|canceled)\(\) takes',
+        to_do=', so call it without an argument, and return the result: '
+        'return MoveArm.Result(position=…)',
+    ),
+    Case(
         pattern='no running event loop',
         to_do=', so wait without asyncio, whose event loop does not run here: await a Future of '
         'rclpy that a timer sets',

@@ -4,6 +4,20 @@ from my_robot_basics.feedback.error_words import Case
 
 OF_CALLS = (
     Case(
+        pattern=r'\bNode\.create_service\(\) takes',
+        to_do=', so give create_service the type, the name and the callback alone: a service '
+        'needs no queue depth',
+    ),
+    Case(
+        pattern=r'\bNode\.create_client\(\) takes',
+        to_do=', so give create_client the type and the name alone: a client needs no queue depth '
+        'and no callback',
+    ),
+    Case(
+        pattern="has no attribute 'get_c_qos_profile'",
+        to_do=', so leave out this depth: services and actions need none',
+    ),
+    Case(
         pattern=r"missing \d required positional arguments?: .*'qos_profile'",
         to_do=', so give all arguments: the type, the name, for a subscription the callback, '
         'and the depth of the queue, such as 10, or a QoS profile',

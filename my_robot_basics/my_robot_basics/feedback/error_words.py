@@ -39,7 +39,7 @@ BY_WORDS = (
         pattern=r"(?:function|method|partial)' object has no attribute 'add_entity'"  # 0,2, f
         r"|argument must be a string or a real number, not 'tuple'"  # period_sec = 0,2
         r"|could not convert string to float: '\d+[,，]\d"  # '0,2'
-        r'|element [-\d.]+ .*is not a ParameterDescriptor'  # declare_parameter('rate_hz', 5,0)
+        r'|element \d+ at .*is not a ParameterDescriptor'  # declare_parameter('rate_hz', 5,0)
         r'|sleep\(\) takes exactly one argument \(2 given\)',
         to_do=DECIMAL_COMMA,
     ),
@@ -104,7 +104,7 @@ BY_WORDS = (
         'first element',
     ),
     Case(
-        pattern='must be real number, not (?:list|tuple)',
+        pattern='must be real number, not (?:list|tuple|array)',
         to_do=', so convert each number by itself: [radians(angle) for angle in angles]; two '
         'arguments need no inner brackets: hypot(x, y)',
     ),
@@ -117,16 +117,12 @@ BY_WORDS = (
     Case(pattern=r'too many values .* in \w+:\)', to_do=', so go through .items() of a dict'),
     Case(pattern="'await' outside async function", to_do=', so begin its function with async def'),
     Case(
-        pattern=r"operand type\(s\) for \S+: .*'Parameter'",
-        to_do=', so take the value out of the parameter with .value',
-    ),
-    Case(
         pattern=r"'NoneType' object has no attribute .*\.result\(\)",
         to_do=', so let add_done_callback call this function: call_async returns before the '
         'answer is there',
     ),
     Case(
-        pattern="'Future' object has no attribute",
+        pattern="'Future' object (?:has no attribute|is not subscriptable)",
         to_do=', so take the answer out of the future with .result()',
     ),
     Case(

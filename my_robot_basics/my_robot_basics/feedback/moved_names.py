@@ -4,6 +4,12 @@ from my_robot_basics.feedback.error_words import Case
 
 MOVED = (
     Case(
+        pattern=r"No module named '\w+_(?:msgs|srvs|interfaces)\.(?:msg|srv|action)'"
+        r"|cannot import name '(?:SolveIK|MoveArm)' from 'arm_interfaces\b",
+        to_do=', so import a message from .msg, a service such as SolveIK from .srv, and an '
+        'action such as MoveArm from .action',
+    ),
+    Case(
         pattern=r"cannot import name '\w+' from '\w+(?:\.(?:msg|srv|action)|_msgs|_interfaces)'",
         to_do=', so import it from the package that has it, such as sensor_msgs.msg for '
         'JointState',

@@ -7,6 +7,8 @@ from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
 from my_robot_basics.feedback.characters import in_ascii
 from my_robot_basics.feedback.error_words import BY_WORDS
+from my_robot_basics.feedback.hidden import without_marks
+from my_robot_basics.feedback.message_errors import OF_MESSAGES
 from my_robot_basics.feedback.missing_attributes import hint_for_missing
 from my_robot_basics.feedback.moved_names import MOVED
 from my_robot_basics.feedback.syntax_errors import OF_SYNTAX
@@ -14,7 +16,8 @@ from my_robot_basics.feedback.value_errors import OF_VALUES
 
 _BY_WORDS = tuple(
     (re.compile(words), clause)
-    for words, clause in (*OF_SYNTAX, *OF_ACTIONS, *BY_WORDS, *MOVED, *OF_CALLS, *OF_VALUES)
+    for cases in (OF_SYNTAX, OF_ACTIONS, OF_MESSAGES, BY_WORDS, MOVED, OF_CALLS, OF_VALUES)
+    for words, clause in cases
 )
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
@@ -36,6 +39,7 @@ def with_hint(told: str) -> str:
 
 def hint_for_exception(said: str) -> str:
     """Return a hint to append to an exception's text, such as 'AttributeError: …'; or ''."""
+    said = without_marks(said)
     if found := _CHARACTER.search(said):
         return _about_character(found[1])
     if found := _NAME.search(said):

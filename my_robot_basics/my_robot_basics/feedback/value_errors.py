@@ -1,8 +1,32 @@
-"""Hints for values of a wrong type, in messages' arrays and in parameters; as error_words."""
+"""Hints for values of a wrong type: of arrays, parameters, durations; as in error_words."""
 
 from my_robot_basics.feedback.error_words import Case
 
 OF_VALUES = (
+    Case(
+        # if it is a whole number, error_words takes it for the second part of 5,0
+        pattern='is not a ParameterDescriptor',
+        to_do=", so give the name and the value alone, such as declare_parameter('rate_hz', 5.0): "
+        'a third argument has to be a ParameterDescriptor',
+    ),
+    Case(
+        pattern=r"'ParameterValue'|not ParameterValue\b",
+        to_do=', so write .value in place of .get_parameter_value()',
+    ),
+    Case(
+        pattern=r"(?:operand type\(s\) for|not supported between instances of) .*'Parameter'"
+        r"|real number, not '?Parameter\b|type Parameter doesn't|'Parameter' object has no attr",
+        to_do=', so take the value out of the parameter with .value',
+    ),
+    Case(
+        pattern=r"'Duration' object has no attribute '(?:to_|total_)?sec"
+        r"|(?:operand type\(s\) for|not supported between instances of) [^(]*'Duration'",
+        to_do=', so take the seconds out of the duration with .nanoseconds / 1e9',
+    ),
+    Case(
+        pattern=r"'\w*(?:Error|Exception)' object has no attribute '(?:message|msg|text|what)'",
+        to_do=', so take its text with str(), such as str(error)',
+    ),
     Case(
         # message.position is an array.array, and += and + take no list
         pattern=r'can only (?:extend|append) array|can only concatenate list \(not "array',

@@ -44,10 +44,14 @@ def what_stopped(node_names: Iterable[str]) -> str:
     names = sorted(set(node_names))
     if raised := what_raised(names):
         return raised
-    said = next(filter(None, map(node_troubles.blocking_line, names)), '')
-    return (
-        f'its callback has not returned ({student_text(said)})' if said else what_ended_a_thread()
-    )
+    return what_has_not_returned(names) or what_ended_a_thread()
+
+
+def what_has_not_returned(node_names: Iterable[str]) -> str:
+    """A clause about an unfinished callback of one of the nodes, or ''."""
+    lines = map(node_troubles.blocking_line, sorted(set(node_names)))
+    said = next(filter(None, lines), '')
+    return f'its callback has not returned ({student_text(said)})' if said else ''
 
 
 def what_ended_a_thread() -> str:
