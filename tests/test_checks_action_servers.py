@@ -169,5 +169,6 @@ def test_a_node_run_as_a_separate_program_passes():
 def test_a_second_action_server_fails_the_check(run):
     run(MoveArmClient)
     run(MoveArmServer)
-    with pytest.raises(CheckFailed, match='saw /move_arm_server: stop that node'):
+    words = r"saw /move_arm_server: stop that node, with stop\('/move_arm_server'\) in a cell"
+    with pytest.raises(CheckFailed, match=words):
         check_outcomes()

@@ -88,7 +88,8 @@ NOWHERE = [
     (ReturnsNothing, r'end the execute callback with `return MoveArm.Result\(position=…\)`'),
     (
         RaisesInExecute,
-        'the execute callback raised an exception .*joint3.*; fix that first: the callback ended',
+        'the execute callback raised an exception .*joint3.*; fix that first, and run again the '
+        'cell that starts or builds the node: the callback ended there',
     ),
     (ReportsNumbers, NO_FEEDBACK),
     (ReportsAResult, NO_FEEDBACK),
@@ -96,7 +97,7 @@ NOWHERE = [
         SucceedsWithTheResult,
         r'so call it without an argument, and return the result: .*MoveArm\.Result\(.*\); fix',
     ),
-    (SleepsWithAsyncio, 'no running event loop.*, so wait without asyncio, .*; fix that first: t'),
+    (SleepsWithAsyncio, 'no running event loop.*, so wait without asyncio, .*; fix that first, '),
     (NeverExecutes, r'a handle_accepted_callback calls goal_handle.execute\(\)'),
     (WaitsForItsOwnTimer, "the execute callback keeps the node's only thread: wait with"),
     (NeverEnds, 'end the loop of the execute callback when the arm is there'),

@@ -7,6 +7,7 @@ from my_robot_basics.checks import CheckFailed, Definitions
 from my_robot_basics.feedback import hidden
 from my_robot_basics.live import show_definition
 from my_robot_basics.ros2.definitions import MOST_CHARACTERS, read_definition
+from my_robot_basics.session.errors import WrongType
 
 PACKAGE = 'turn_interfaces'
 TURNS = """
@@ -400,3 +401,19 @@ def test_show_definition_explains_each_line(capsys):
         'int n                    refused: there is no type int: write int32 or another int '
         'with its number of bits\n'
     )
+
+
+@pytest.mark.parametrize(
+    ('given', 'seen'), [(['int32 n'], r"a list \(\['int32 n'\]\)"), (None, r'a NoneType \(None\)')]
+)
+def test_show_definition_refuses_a_value_that_is_not_a_text(given, seen):
+    with pytest.raises(WrongType, match=f'^expected a definition to be a text, saw {seen}: write'):
+        show_definition(given)
+
+
+def test_show_definition_names_no_package_for_a_type_without_one(capsys):
+    show_definition('Header h')
+    said = (
+        'refused: your own package has no message Header: write its package before it, std_msgs/'
+    )
+    assert said in capsys.readouterr().out

@@ -192,7 +192,8 @@ def test_a_second_server_that_appears_later_fails_the_check(run, check):
 def test_a_second_server_is_named(run):
     run(IKClient)
     run(imported('ik_service').IKService)
-    with pytest.raises(
-        CheckFailed, match='no server of /solve_ik but that of this check, saw /ik'
-    ):
+    words = (
+        r"/solve_ik but that of this check, saw /ik_service: .* with stop\('/ik_service'\) in a"
+    )
+    with pytest.raises(CheckFailed, match=words):
         check_asks()

@@ -81,8 +81,10 @@ def test_why_not_running_says_what_ended_the_node_of_an_answer(lesson):
     lesson.run("run(Answer, 'again')")
     assert unknown in lesson.value('why_not_running()')
     lesson.run('stop(Answer)')
-    stopped = 'the node of Answer no longer runs, because a cell below has stopped it'
-    assert stopped in lesson.value('why_not_running()')
+    stopped = 'no longer runs, because stop(…) was called after it was started, so run the cell'
+    assert f'the node of Answer {stopped} with run_answer(…) again' in lesson.value(
+        'why_not_running()'
+    )
     lesson.run('reset()')
     assert unknown in lesson.value('why_not_running()')
 

@@ -55,6 +55,8 @@ def test_two_nodes_of_one_class_run_under_two_keys(lesson):
     assert lesson.value('alive(left), alive(right)') == '(True, True)'
     lesson.run("stop('l')")
     assert lesson.value("'left' in right.get_node_names(), alive(right)") == '(False, True)'
+    lesson.run("left = run(Named, 'left', key='l'); stop('/left')")
+    assert lesson.value("'left' in right.get_node_names(), alive(right)") == '(False, True)'
     lesson.run('stop(right)')
     assert "no node runs as 'r'" in lesson.run("stop('r')").stdout
 

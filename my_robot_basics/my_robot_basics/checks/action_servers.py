@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from std_msgs.msg import String
 
 from my_robot_basics.checks.served_action import ServedAction
+from my_robot_basics.checks.sole_server import stop_call
 from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import expect
 from my_robot_basics.feedback.hidden import student_text
@@ -38,7 +39,8 @@ def action_server(
             not others,
             expected=f'no server of the action {name} but that of this check',
             seen=student_text(', '.join(sorted(others))),
-            hint='stop that node: here, the check itself serves',
+            hint=f'stop that node, with {stop_call(others)} in a cell or Ctrl-C in its terminal:'
+            ' here, the check itself serves',
             cause=f'another node serves {name}',
         )
         server = ServedAction(

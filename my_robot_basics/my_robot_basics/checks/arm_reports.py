@@ -129,7 +129,9 @@ class MoveReport:
         off = off_line(positions, self.arm.start, self.end)
         if off.max() > ON_LINE_RAD:
             hint = why_off_line(positions, self.arm.start, self.end)
-            self._fail_position(positions[int(off.argmax())], hint, 'positions on a straight line')
+            self._fail_position(
+                positions[int(off.argmax())], hint, 'positions on a straight line in joint space'
+            )
 
     def expect_steady(self) -> None:
         """Expect the arm to move along the line at one speed. Raises CheckFailed."""

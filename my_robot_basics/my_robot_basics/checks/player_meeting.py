@@ -71,8 +71,9 @@ class PlayerMeeting:
 
     def expect_alone(self, *, own: int) -> None:
         """There are only the check's `own` servers of each name. Raises CheckFailed."""
-        expect_no_other(self.watcher, SOLVE_IK, own=own)
-        expect_no_other(self.watcher, f'{MOVE_ARM}/_action/send_goal', own=own)
+        # the notebook may have started it as a process, which stop() ends, too
+        for name in SOLVE_IK, f'{MOVE_ARM}/_action/send_goal':
+            expect_no_other(self.watcher, name, own=own, stop='stop()')
 
     def fail_silent(
         self, *, expected: str, hint: str, cause: str, doubt: type[CheckFailed] = CheckFailed

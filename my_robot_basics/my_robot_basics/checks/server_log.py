@@ -51,7 +51,11 @@ class ServerLog:
         raised = f'the execute callback raised an exception ({why})' if said else _NO_TEXT
         raised += hint_for_exception(said)
         # rclpy catches what this callback raises: its spin goes on, as it does for no other
-        return f'{raised}; fix that first: the callback ended there'
+        # in a package, the check starts the node, after the build
+        return (
+            f'{raised}; fix that first, and run again the cell that starts or builds the node: the'
+            ' callback ended there'
+        )
 
     def was_not_set(self, *, since_ns: int) -> bool:
         """Whether the execute callback ended without succeed(), abort() or canceled()."""

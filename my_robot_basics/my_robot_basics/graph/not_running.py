@@ -21,7 +21,8 @@ def why_not_running() -> str:
         )
     if ended:
         return (
-            f'the node of {student_text(ended)} no longer runs, because a cell below has stopped'
-            ' it with stop(…), so delete that line'
+            f'the node of {student_text(ended)} no longer runs, because stop(…) was called after'
+            ' it was started, so run the cell with run_answer(…) again; if a cell of yours after'
+            ' that one calls stop(…), delete that line'
         )
     return NOT_RUNNING

@@ -29,6 +29,7 @@ class Background:
         the node ends by itself; `before` is called first. All three run in the node's thread.
         """
         self.node = node
+        self.name = node.get_fully_qualified_name()
         self._on_error = on_error
         self._on_end = on_end
         self._before = before

@@ -2,9 +2,11 @@
 
 from collections.abc import Collection
 
+from my_robot_basics.exchange.expected_types import brief, with_article
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.ros2.definitions import DefinedMember, line_meanings
+from my_robot_basics.session.errors import WrongType
 
 PACKAGE = 'turn_interfaces'
 """The package of lesson 10's exercise."""
@@ -14,8 +16,15 @@ _WIDTH = 40
 def show_definition(text: str, *, own_types: Collection[str] = (), package: str = PACKAGE) -> None:
     """Print what each line of a definition means to rosidl, or why it is refused.
 
-    `package` is the file's package, and `own_types` has the names of its messages.
+    `package` is the file's package, and `own_types` has the names of its messages. Raises
+    WrongType if the definition is not a str.
     """
+    __tracebackhide__ = True
+    if not isinstance(text, str):
+        seen = f'{with_article(type(text).__name__)} ({brief(text)})'
+        raise WrongType(
+            f'expected a definition to be a text, saw {seen}: write its lines between """ and """'
+        )
     lines = [
         (
             shorten(line),

@@ -72,7 +72,7 @@ def launch(
     panel = make_panel()
 
     def on_name(name: str) -> None:
-        same = [k for k, b in _running.items() if b.node.get_fully_qualified_name() == name]
+        same = [k for k, b in _running.items() if b.name == name]
         _stop_keys(answer_end.note_end(same, (key, name)))
         if _neighbours.has_node(name):
             raise _NotStartedByLive(name)
@@ -111,7 +111,7 @@ def launch(
 
 
 def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
-    """Stop the node with this key, this node, or the nodes of this class; by default, all nodes.
+    """Stop the node with this key or full name, this node, or this class's; by default, all nodes.
 
     "All" includes processes that `run_commands` and `run_executable` have started; for the
     latter, it is printed how each has ended.
@@ -121,7 +121,7 @@ def stop(key_or_node: str | type[Node] | Node | None = None) -> None:
         commands.stop_commands()
         executables.stop_started()
         return
-    keys = [k for k, b in _running.items() if key_or_node in (k, b.node, type(b.node))]
+    keys = [k for k, b in _running.items() if key_or_node in (k, b.name, b.node, type(b.node))]
     if not keys:
         name = getattr(key_or_node, '__name__', repr(key_or_node))
         tell(f'nothing to stop: no node runs as {name}')

@@ -104,7 +104,8 @@ def read_line(line: str, *, package: str, own_types: Collection[str]) -> Defined
     type_ = parsed.type
     if type_.pkg_name == package:
         if type_.type not in own_types:
-            raise BadLine(_about_unknown(f'{package} has no message {type_.type}', type_.type))
+            fault = f'your own package has no message {type_.type}'
+            raise BadLine(_about_unknown(fault, type_.type))
     elif not type_.is_primitive_type() and f'{type_.pkg_name}/msg/{type_.type}' not in _known():
         shown = f'{type_.pkg_name}/{type_.type}'
         raise BadLine(_about_unknown(f'there is no message type {shown}', type_.type))

@@ -50,7 +50,7 @@ class NotRunnable(LiveError):
 
 
 class WrongType(LiveError, TypeError):
-    """A call gives rclpy a type of a wrong kind, with which it would crash."""
+    """A call gives a value of a wrong type, such as one with which rclpy would crash."""
 
 
 class WaitTimeout(LiveError, TimeoutError):
