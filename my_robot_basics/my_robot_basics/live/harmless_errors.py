@@ -1,5 +1,6 @@
 """Hide harmless errors and warnings of rclpy that no code can catch."""
 
+import re
 import sys
 import threading
 import warnings
@@ -11,14 +12,14 @@ from rclpy.signals import SignalHandlerGuardCondition
 from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.live import troubles
 
-GONE = r'failed to send response \(timeout\)'
+_GONE = re.compile(r'failed to send response \(timeout\)')
 _OF_EXECUTORS = {each.__del__.__qualname__ for each in (Executor, SignalHandlerGuardCondition)}
 
 
 def hide() -> None:
     """Hide such errors from now on, in a thread and while an object is deleted."""
     # the client has gone, such as that of a check that failed: the student can do nothing about it
-    warnings.filterwarnings('ignore', GONE, RuntimeWarning)
+    warnings.filterwarnings('ignore', _GONE.pattern, RuntimeWarning)
     threading.excepthook = _without_shutdowns(threading.excepthook)
     sys.unraisablehook = _without_races(sys.unraisablehook)
 
