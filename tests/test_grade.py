@@ -25,6 +25,7 @@ from grader.storage.records import graded_notebook, records
 from grader.storage.submitted import find_submissions
 
 RIGHT = 'def double(x):\n    return 2 * x'
+UNDECIDED = '? the machine was too busy'
 WRONG = 'def double(x):\n    return x + 1'
 
 
@@ -42,7 +43,7 @@ def course(released, tmp_path, monkeypatch):
         if 'crash' in answer:
             raise OSError('no room')
         reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
-        reason = '?' if times[seed] < int(answer.partition('# busy ')[2] or 0) else reason
+        reason = UNDECIDED if times[seed] < int(answer.partition('# busy ')[2] or 0) else reason
         times[seed] += 1
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
         notebook.metadata[KEY]['seed'] = seed
@@ -198,6 +199,23 @@ def test_a_check_whose_points_a_person_gave_is_not_tried_again(course):
             grade.manual_score, grade.needs_manual_grade = 1.0, False
         book.db.commit()
     assert [row.again for row in grade_all(course, find_submissions(course))] == [False]
+
+
+def test_a_score_given_by_hand_replaces_the_reason_why_there_was_none(course):
+    submit(course, 'ada', answered(course, f'{RIGHT}  # busy 9', explained='so'))
+    list(grade_all(course, find_submissions(course)))
+    page = course.folder('feedback', 'ada', TOY) / f'{TOY}.html'
+    for decided in False, True:
+        if decided:
+            with Gradebook(course.db_url) as book:
+                for name in ('double-check', 'double-hidden', 'explain'):
+                    grade = book.find_grade(name, TOY, TOY, 'ada')
+                    grade.manual_score, grade.needs_manual_grade = 1.0, False
+                book.db.commit()
+        assert main(['scores'], course=course) == 0
+        assert main(['feedback'], course=course) == 0
+        told = (course.gradebook / 'scores.csv').read_text(), page.read_text()
+        assert [UNDECIDED in text for text in told] == [not decided] * 2
 
 
 @pytest.mark.parametrize('students', [['ada'], ['ada', 'bob']])

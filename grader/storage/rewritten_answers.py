@@ -42,8 +42,9 @@ def note_rewritten(graded: NotebookNode, former_path: Path, points: dict[str, fl
 
 
 def reason_today(verdict: Mapping[str, Any], *, by_hand: bool) -> str:
-    """Return a verdict's reason; '' if a person has read the rewritten answer since."""
-    return '' if by_hand and EARLIER_POINTS in verdict else verdict.get('reason', '')
+    """Return a verdict's reason; '' if a person has since read a rewritten answer, or decided."""
+    is_settled = EARLIER_POINTS in verdict or verdict.get('outcome') == 'ungraded'
+    return '' if by_hand and is_settled else verdict.get('reason', '')
 
 
 def _answers(path: Path) -> dict[str, NotebookNode]:
