@@ -60,14 +60,11 @@ class GatherVerdicts(GetGrades):
         verdict = cell.metadata.setdefault(KEY, NotebookNode())
         verdict.by_hand = grade.manual_score is not None
         verdict.waits = grade.auto_score is None and not verdict.by_hand
-        former, verdict.reason = (
-            verdict.get('reason'),
-            reason_today(verdict, by_hand=verdict.by_hand),
-        )
-        if former and not verdict.reason and 'outputs' in cell:
-            cell.outputs = [
-                each for each in cell.outputs if each.get('text', '').strip() != former
-            ]
+        former = verdict.get('reason')
+        verdict.reason = reason_today(verdict, by_hand=verdict.by_hand)
+        if former and not verdict.reason and cell.cell_type == 'code':
+            outputs = cell.outputs  # one of them repeats the reason
+            cell.outputs = [each for each in outputs if each.get('text', '').strip() != former]
 
 
 def _unknown(student: str, assignment: str, resources: dict) -> str:
