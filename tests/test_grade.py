@@ -62,6 +62,14 @@ def rows_of(course, **wanted):
     return {row.student_id: row for row in grade_all(course, find_submissions(course, **wanted))}
 
 
+def give_points(course, student):
+    with Gradebook(course.db_url) as book:
+        for name in ('double-check', 'double-hidden', 'explain'):
+            grade = book.find_grade(name, TOY, TOY, student)
+            grade.manual_score, grade.needs_manual_grade = 1.0, False
+        book.db.commit()
+
+
 def test_each_submission_gets_its_row_and_its_scores(course):
     submit(course, 'ada', answered(course, RIGHT))
     submit(course, 'bob', answered(course, WRONG))
@@ -193,11 +201,7 @@ def test_the_first_result_stays_if_the_second_grading_fails(course):
 def test_a_check_whose_points_a_person_gave_is_not_tried_again(course):
     submit(course, 'ada', answered(course, f'{RIGHT}  # busy 9', explained='so'))
     list(grade_all(course, find_submissions(course)))
-    with Gradebook(course.db_url) as book:
-        for name in ('double-check', 'double-hidden', 'explain'):
-            grade = book.find_grade(name, TOY, TOY, 'ada')
-            grade.manual_score, grade.needs_manual_grade = 1.0, False
-        book.db.commit()
+    give_points(course, 'ada')
     assert [row.again for row in grade_all(course, find_submissions(course))] == [False]
 
 
@@ -207,11 +211,7 @@ def test_a_score_given_by_hand_replaces_the_reason_why_there_was_none(course):
     page = course.folder('feedback', 'ada', TOY) / f'{TOY}.html'
     for decided in False, True:
         if decided:
-            with Gradebook(course.db_url) as book:
-                for name in ('double-check', 'double-hidden', 'explain'):
-                    grade = book.find_grade(name, TOY, TOY, 'ada')
-                    grade.manual_score, grade.needs_manual_grade = 1.0, False
-                book.db.commit()
+            give_points(course, 'ada')
         assert main(['scores'], course=course) == 0
         assert main(['feedback'], course=course) == 0
         told = (course.gradebook / 'scores.csv').read_text(), page.read_text()
