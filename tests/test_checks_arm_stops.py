@@ -1,9 +1,10 @@
 """What a check reads from the result of a cancelled goal, with made-up positions."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks.arm_stops import expect_on_the_way
+from my_robot_basics.checks.arm_stops import expect_on_the_way, last_told
 from my_robot_basics.checks.cancel_moments import moment_to_cancel
 from my_robot_basics.feedback.errors import CheckFailed
 
@@ -92,3 +93,18 @@ def test_a_move_of_two_seconds_is_surely_over_when_the_open_check_cancels_a_long
 @pytest.mark.parametrize('is_driven', [True, False])
 def test_a_brief_move_is_cancelled_on_its_way(is_driven):
     assert moment_to_cancel(0.75, is_driven=is_driven) == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(
+    ('told', 'where'),
+    [
+        ([[0.1, 0.2], [0.8, -0.4]], (0.8, -0.4)),
+        ([], (0.0, 0.0)),
+        ([[0.8]], (0.0, 0.0)),
+        ([[math.nan, 0.1]], (0.0, 0.0)),
+    ],
+)
+def test_without_a_result_the_last_feedback_says_where_the_arm_was_stopped(told, where):
+    """From there, the next move takes longer; it was not waited for, and all points were earned."""
+    messages = [(0, SimpleNamespace(position=position)) for position in told]
+    assert last_told(SimpleNamespace(feedback=lambda: messages), (0.0, 0.0)) == where

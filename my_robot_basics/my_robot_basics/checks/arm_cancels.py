@@ -3,13 +3,13 @@
 import time
 from typing import Any, NoReturn
 
+from my_robot_basics.checks import arm_stops
 from my_robot_basics.checks.accepted_goals import expect_accepted
 from my_robot_basics.checks.action_ends import SentGoal, cancels
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_progress import is_under_way
 from my_robot_basics.checks.arm_results import expect_result, is_near
-from my_robot_basics.checks.arm_stops import expect_begins_at, expect_canceled, expect_on_the_way
 from my_robot_basics.checks.cancel_moments import moment_to_cancel
 from my_robot_basics.checks.open_action import BLOCKED
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
@@ -59,16 +59,18 @@ def expect_cancels(
         )
         _cancel(arm, sent, wanted_sec=wanted_sec)
         expect_result(arm, sent)
-        expect_canceled(arm, sent)
+        arm_stops.expect_canceled(arm, sent)
         arm.time.let_pass(lambda: False, seconds=REST_SEC if arm.time.is_driven else WALL_REST_SEC)
         began, stopped = arm.start, list(sent.result.position)
         if stopped:
-            expect_on_the_way(arm, sent, position, start=began)
-            arm.start = tuple(stopped)
+            arm_stops.expect_on_the_way(arm, sent, position, start=began)
+        arm.start = tuple(stopped) or arm_stops.last_told(
+            sent, began
+        )  # the next move's way begins there
         moved = _expect_moves_on(arm, began, former=sent if stopped else None)
         # if the next result is empty, too, another check reports that
         if not stopped and moved.result is not None and moved.result.position:
-            expect_on_the_way(arm, sent, position, start=began)
+            arm_stops.expect_on_the_way(arm, sent, position, start=began)
 
     look(action, stops, start=start)
 
@@ -182,7 +184,7 @@ def _expect_moves_on(
     elif not is_under_way(arm, sent, position):
         _fail_without_end(arm, sent, most_sec)
     if former is not None:
-        expect_begins_at(arm, list(former.result.position), sent, former=former)
+        arm_stops.expect_begins_at(arm, list(former.result.position), sent, former=former)
     is_early = ends and arm.seconds(sent) < EARLY_PART * wanted_sec
     is_there = sent.result is not None and is_near(list(sent.result.position), position)
     if is_early and sent.feedback() and is_there:

@@ -117,6 +117,13 @@ def _why_at_the_goal(sent: SentGoal, position: Pose) -> str:
     return 'put in where the arm is, not where it was to go'
 
 
+def last_told(sent: SentGoal, otherwise: Pose) -> tuple[float, ...]:
+    """Return where the arm is by its last feedback, in rad; `otherwise` without a position."""
+    told = [tuple(message.position) for _, message in sent.feedback()][-1:]
+    is_pose = bool(told) and len(told[0]) == len(otherwise) and all(map(math.isfinite, told[0]))
+    return told[0] if is_pose else tuple(otherwise)
+
+
 def expect_begins_at(arm: WatchedArm, stopped: Pose, moved: SentGoal, *, former: SentGoal) -> None:
     """Expect the feedback on `moved` to begin where the goal before it, `former`, was stopped.
 
