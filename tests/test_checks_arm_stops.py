@@ -105,6 +105,6 @@ def test_a_brief_move_is_cancelled_on_its_way(is_driven):
     ],
 )
 def test_without_a_result_the_last_feedback_says_where_the_arm_was_stopped(told, where):
-    """From there, the next move takes longer; it was not waited for, and all points were earned."""
+    """From there, the next move takes longer: nobody waited for it, and all points were earned."""
     messages = [(0, SimpleNamespace(position=position)) for position in told]
     assert last_told(SimpleNamespace(feedback=lambda: messages), (0.0, 0.0)) == where
