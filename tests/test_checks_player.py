@@ -172,7 +172,7 @@ def test_an_unknown_word_is_refused():
 @pytest.mark.parametrize(('free_sec', 'doubt'), [(8.0, CheckFailed), (1.0, Starved)])
 def test_a_missing_client_counts_as_starved_on_a_busy_machine(monkeypatch, free_sec, doubt):
     """It had no client after eight seconds on the wall clock, and most of them were not free."""
-    monkeypatch.setattr(player_meeting, 'expect_no_other', lambda *_, own: None)
+    monkeypatch.setattr(player_meeting, 'expect_no_other', lambda *_, own, stop: None)
     monkeypatch.setattr(player_meeting.drawing_hints, 'why_no_client', lambda watcher: 'look')
     watch = SimpleNamespace(free_sec=lambda: free_sec)
     monkeypatch.setattr(player_meeting, 'Stopwatch', lambda: watch)
