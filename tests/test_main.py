@@ -130,6 +130,14 @@ def test_a_database_that_is_gone_is_not_replaced_by_one_without_scores(tmp_path,
     shutil.copy(backup, course.database)
     assert main(['scores'], course=course) == 0
     assert (course.gradebook / 'scores.csv').read_bytes() == table
+    shutil.rmtree(course.gradebook / 'backups')
+    course.database.unlink()
+    for verb in ('scores', 'feedback'):
+        capsys.readouterr()
+        assert main([verb], course=course) == 1
+        assert 'has no copy of it: put yours in its place' in capsys.readouterr().err
+    assert (course.gradebook / 'scores.csv').read_bytes() == table
+    assert main(['grade'], course=course) == 0
 
 
 def test_an_empty_database_before_anything_is_graded_is_made_anew(tmp_path, capsys):

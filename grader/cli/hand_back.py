@@ -5,13 +5,15 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.common.errors import CourseError
+from grader.common.db_url import is_in_postgresql
+from grader.common.errors import CourseError, GradebookError
 from grader.common.text import printable
 from grader.course import Course
 from grader.export.scores import write_scores
 from grader.export.totals import write_totals
 from grader.passback.write import write_feedback_archives, write_platform_scores
 from grader.storage.database import has_database, open_database, wait_until_free
+from grader.storage.failures import gone_message
 from grader.storage.registering import withdrawn
 
 
@@ -90,8 +92,14 @@ def _say_line(line: str) -> None:
 def _wait_for_database(course: Course) -> None:
     if has_database(course):
         wait_until_free(course)
+    elif _is_graded(course) and not is_in_postgresql(course.db_url):
+        raise GradebookError(gone_message(course))
+
+
+def _is_graded(course: Course) -> bool:
+    return any(course.folder('autograded', '', '').glob('*/*/*.ipynb'))
 
 
 def _say_what_comes_first(course: Course) -> None:
-    if not any(course.folder('autograded', '', '').glob('*/*/*.ipynb')):
+    if not _is_graded(course):
         print('Nothing is graded yet. Next: ./course grade', file=sys.stderr)

@@ -32,9 +32,15 @@ def newest_backup(course: Course) -> Path | None:
 
 
 def gone_message(course: Course) -> str:
-    """Return the message for a database that is not there, but was backed up before."""
+    """Return the message for a database that is not there, although there were scores in it."""
+    newest = newest_backup(course)
+    if newest is None:
+        return (
+            f'{course.database} is gone, and {backups_of(course)} has no copy of it: put yours in '
+            'its place. Without one, run ./course grade: what was scored by hand is lost then.'
+        )
     return (
-        f"{course.database} is gone. Put a backup in its place with cp '{newest_backup(course)}' "
+        f"{course.database} is gone. Put a backup in its place with cp '{newest}' "
         f"'{course.database}', then run the same command again. To begin without any scores, also "
         f'of those given by hand, move {backups_of(course)} away first.'
     )
