@@ -76,23 +76,25 @@ def test_a_server_that_looks_twice_a_second_is_late_whenever_its_goal_is_cancell
     """With 2.4 s of 6.0, it stopped in time by chance, and the visible check passed."""
     asked_sec = moment_to_cancel(move_sec, is_driven=is_driven)
     assert 0.2 * move_sec < asked_sec < 0.7 * move_sec
-    assert -asked_sec % looks_sec > 0.4
+    assert -asked_sec % looks_sec > 0.3
 
 
-def test_a_server_that_looks_every_four_tenths_of_a_second_is_late_in_the_visible_check():
-    """It earned all points in 5 of 12 gradings, depending on hidden angles."""
-    assert -moment_to_cancel(6.0, is_driven=True) % 0.4 > 0.3
+@pytest.mark.parametrize('looks_sec', [0.4, 0.5, 0.6, 0.7, 0.8, 1.0])
+@pytest.mark.parametrize('move_sec', [6.0, 8.0, 10.0, 14.0])
+def test_a_server_that_looks_at_other_intervals_is_late_in_the_visible_check(looks_sec, move_sec):
+    """With 0.4 s, it earned all points in 5 of 12 gradings, depending on hidden angles."""
+    assert -moment_to_cancel(move_sec, is_driven=True) % looks_sec > 0.3
 
 
 def test_a_move_of_two_seconds_is_surely_over_when_the_open_check_cancels_a_longer_one():
     """At 2.05 s, a server whose moves take two seconds each was sometimes told something else."""
-    assert moment_to_cancel(6.0, is_driven=True) == 4.05
+    assert moment_to_cancel(6.0, is_driven=True) == pytest.approx(3.65)
     assert moment_to_cancel(6.0, is_driven=False) == 2.55
 
 
 @pytest.mark.parametrize('is_driven', [True, False])
 def test_a_brief_move_is_cancelled_on_its_way(is_driven):
-    assert moment_to_cancel(0.75, is_driven=is_driven) == pytest.approx(0.3)
+    assert moment_to_cancel(0.75, is_driven=is_driven) == pytest.approx(0.3, abs=0.06)
 
 
 @pytest.mark.parametrize(

@@ -64,9 +64,8 @@ def expect_cancels(
         began, stopped = arm.start, list(sent.result.position)
         if stopped:
             arm_stops.expect_on_the_way(arm, sent, position, start=began)
-        arm.start = tuple(stopped) or arm_stops.last_told(
-            sent, began
-        )  # the next move's way begins there
+        # without a result, the next move still has to have the time for its way
+        arm.start = tuple(stopped) or arm_stops.last_told(sent, began)
         moved = _expect_moves_on(arm, began, former=sent if stopped else None)
         # if the next result is empty, too, another check reports that
         if not stopped and moved.result is not None and moved.result.position:
