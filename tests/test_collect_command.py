@@ -1,6 +1,7 @@
 """`./course collect`: what it prints, and which folders it takes."""
 
 import os
+import time
 from datetime import UTC, datetime
 
 import nbformat
@@ -61,6 +62,18 @@ def test_a_time_that_was_not_known_before_is_added_and_a_known_one_stays(course,
         'there already: the time that counts is 2023-11-14 22:13:20',
     ]
     assert date_of(stamp) == datetime(2023, 11, 14, 22, 13, 20, tzinfo=UTC)
+
+
+def test_the_same_files_handed_in_later_do_not_become_late(course, came_in, capsys):
+    paper = came_in / f'ada_{TOY}.ipynb'
+    write(paper, 'x')
+    assert main(['collect', str(came_in)], course=course) == 0
+    later = time.time() + 90_000.0
+    os.utime(paper, (later, later))
+    capsys.readouterr()
+    assert main(['collect', str(came_in), '--file-times'], course=course) == 0
+    assert 'there already: taken in before that, on ' in capsys.readouterr().out
+    assert not (course.folder('submitted', 'ada', TOY) / TIMESTAMP).exists()
 
 
 def test_a_missing_or_empty_folder_to_collect_is_reported(course, tmp_path, capsys):

@@ -25,7 +25,7 @@ from grader.collect.submission_folders import (
     writer,
 )
 from grader.collect.uploads import read_upload
-from grader.common.dates import date_of
+from grader.common.dates import date_of, utc_of
 from grader.common.errors import DISK_FULL, CourseError, TaskFailed
 from grader.common.files import write_whole
 from grader.course import Course
@@ -166,6 +166,9 @@ def _note_time(path: Path, came: datetime | None, stored: datetime | None) -> st
         return 'nothing new'
     if stored:
         return f'the time that counts is {stored:%Y-%m-%d %H:%M:%S}'
+    taken = utc_of(path.parent.stat().st_mtime)
+    if taken and came > taken:  # the same files once more, which must not make them late
+        return f'taken in before that, on {taken:%Y-%m-%d %H:%M:%S}, without a time'
     write_whole(path, timestamp(came))
     return 'when it was handed in was not known before'
 
