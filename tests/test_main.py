@@ -81,13 +81,18 @@ def test_a_file_or_broken_link_in_place_of_the_gradebook_is_named(tmp_path, caps
     assert is_link or course.gradebook.read_text() == 'kept'
 
 
-def test_an_emptied_database_is_reported_as_damaged_after_grading(tmp_path, capsys):
-    course = make_course(tmp_path)
+def graded_course(folder):
+    """Return a course with a submission and its scores, and their table."""
+    course = make_course(folder)
     assert main(['release'], course=course) == 0
     submit(course, 'ada', b'')
     assert main(['grade'], course=course) == 0
     assert main(['scores'], course=course) == 0
-    table = (course.gradebook / 'scores.csv').read_bytes()
+    return course, (course.gradebook / 'scores.csv').read_bytes()
+
+
+def test_an_emptied_database_is_reported_as_damaged_after_grading(tmp_path, capsys):
+    course, table = graded_course(tmp_path)
     backup = back_up(course)
     course.database.write_bytes(b'')
     capsys.readouterr()
@@ -112,12 +117,7 @@ def test_an_emptied_database_is_reported_as_damaged_after_grading(tmp_path, caps
 
 
 def test_a_database_that_is_gone_is_not_replaced_by_one_without_scores(tmp_path, capsys):
-    course = make_course(tmp_path)
-    assert main(['release'], course=course) == 0
-    submit(course, 'ada', b'')
-    assert main(['grade'], course=course) == 0
-    assert main(['scores'], course=course) == 0
-    table = (course.gradebook / 'scores.csv').read_bytes()
+    course, table = graded_course(tmp_path)
     backup = back_up(course)
     course.database.unlink()
     capsys.readouterr()

@@ -40,11 +40,14 @@ def print_rows(
     more = ['expected'] if expected else []
     print(line('student', 'assignment', *more, 'score', 'reason'), flush=True)
     bar = tqdm(rows, total=len(submissions), disable=None, leave=False, unit='notebook')
+    outcomes: Counter[str] = Counter()
     by_submission: dict[tuple[str, str], str] = {}
     with bar, _ticking(bar):
         for row in bar:
-            by_submission[row.student_id, row.assignment] = _outcome(row)
-            outcomes = Counter(by_submission.values())
+            whose = row.student_id, row.assignment
+            outcomes[by_submission.get(whose, '')] -= 1  # a second row replaces the first
+            by_submission[whose] = _outcome(row)
+            outcomes[by_submission[whose]] += 1
             counted = (f'{outcomes[said]} {said}' for said in _OUTCOMES if outcomes[said])
             bar.set_postfix_str(', '.join(counted), refresh=False)
             more = [expected.get(row.student_id, '')] if expected else []

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from grader.common.errors import CourseError
+from grader.common.futures import started
 from grader.common.text import printable
 from grader.course import Course
 from grader.grading import GradedSubmission, Grading, PreparedAssignment
@@ -55,23 +56,18 @@ def check_for_pause(serving: ServingState) -> bool:
 
 
 def run(serving: ServingState, arrival: Arrival) -> None:
-    """Have the submission graded that is in its place now."""
-    serving.running[_start(serving, folder_of(serving, arrival))] = arrival
+    """Have the submission graded that is in its place now; an error becomes its result."""
+
+    def start(found: SubmissionFolder) -> 'Future[GradedSubmission]':
+        return serving.grading.start(found, _prepared(serving, found.assignment))
+
+    serving.running[started(start, folder_of(serving, arrival))] = arrival
 
 
 def folder_of(serving: ServingState, arrival: Arrival) -> SubmissionFolder:
     """Return where a submission is graded."""
     folder = serving.course.folder('submitted', *arrival.submission_key)
     return SubmissionFolder(*arrival.submission_key, folder)
-
-
-def _start(serving: ServingState, found: SubmissionFolder) -> 'Future[GradedSubmission]':
-    try:
-        return serving.grading.start(found, _prepared(serving, found.assignment))
-    except Exception as error:  # becomes the result of this submission; others are not affected
-        failed: Future[GradedSubmission] = Future()
-        failed.set_exception(error)
-        return failed
 
 
 def _prepared(serving: ServingState, assignment: str) -> PreparedAssignment:
