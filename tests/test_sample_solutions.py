@@ -2,7 +2,7 @@ from datetime import datetime, timedelta
 
 import nbformat
 import pytest
-from course_maker import TOY, make_course, toy_lesson, write_source
+from course_maker import TOY, add_lesson, make_course, toy_lesson, write_source
 
 from grader.__main__ import main
 from grader.authoring.leaks import MARKS
@@ -29,7 +29,7 @@ def in_days(days):
 
 
 def test_solutions_have_the_answers_and_nothing_that_is_hidden(course):
-    (path,) = write_solutions(course)
+    (path,) = write_solutions(course).paths
     cells = {cell.id: cell for cell in nbformat.read(path, as_version=4).cells}
     assert cells['double'].source == (
         'def double(x):\n    """Return twice x."""\n    return x + x  # the secret answer'
@@ -43,7 +43,7 @@ def test_solutions_have_the_answers_and_nothing_that_is_hidden(course):
 
 
 def test_each_lesson_has_a_solution_that_runs_as_python(tmp_path):
-    paths = write_solutions(Course(gradebook=tmp_path))
+    paths = write_solutions(Course(gradebook=tmp_path)).paths
     assert len(paths) == len(Course().assignments()) >= 8
     for path in paths:
         text = path.read_text(encoding='utf-8')
@@ -67,6 +67,45 @@ def test_solutions_are_not_written_while_a_student_may_still_submit(course, caps
     assert main(['solutions', TOY, '--early'], course=course) == 0
     set_due(course, TOY, None, student_id='ada')
     assert main(['solutions', TOY], course=course) == 0
+
+
+@pytest.fixture
+def solutions(course):
+    for name in ('01_open', '02_extended', '03_undated'):
+        add_lesson(course, name)
+    set_due(course, TOY, in_days(-2))
+    set_due(course, '01_open', in_days(1))
+    set_due(course, '02_extended', in_days(-2))
+    set_due(course, '02_extended', in_days(1), student_id='ada')
+    return course.gradebook / 'solutions'
+
+
+def test_an_open_lesson_does_not_stop_the_solutions_of_closed_ones(course, solutions, capsys):
+    assert main(['solutions'], course=course) == 0
+    assert [path.name for path in solutions.iterdir()] == [f'{TOY}.ipynb']
+    path, *left_out, after = capsys.readouterr().out.splitlines()
+    assert path == str(solutions / f'{TOY}.ipynb')
+    assert left_out[0] == 'Not written, because students may still submit:'
+    assert [line.partition(' can be handed in until ')[0] for line in left_out[1:3]] == [
+        '  01_open',
+        '  02_extended',
+    ]
+    assert left_out[3:] == ['  03_undated has no due date (./course due)']
+    assert './course solutions' in after
+    assert '--early' in after
+
+
+def test_an_open_lesson_is_written_only_early_and_an_undated_one_by_name(
+    course, solutions, capsys
+):
+    assert main(['solutions', '02_extended'], course=course) == 1
+    assert '02_extended can be handed in until' in capsys.readouterr().err
+    assert not solutions.exists()
+    assert main(['solutions', '03_undated'], course=course) == 0
+    assert [path.stem for path in solutions.iterdir()] == ['03_undated']
+    assert main(['solutions', '--early'], course=course) == 0
+    assert len(list(solutions.iterdir())) == 4
+    assert 'Not written' not in capsys.readouterr().out
 
 
 @pytest.mark.starts  # to release takes long

@@ -127,8 +127,13 @@ def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
     from grader.export.sample_solutions import write_solutions
 
     wanted = [asked.assignment] if asked.assignment else ()
-    for path in write_solutions(course, wanted, early=asked.early):
+    written = write_solutions(course, wanted, early=asked.early)
+    for path in written.paths:
         print(path)
+    if written.left_out:
+        print('Not written, because students may still submit:')
+        print(*(f'  {line}' for line in written.left_out), sep='\n')
+        print('Next, when they are closed: ./course solutions. With --early, all are written now.')
     return 0
 
 

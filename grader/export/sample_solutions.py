@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -44,22 +45,38 @@ class ShowSolutions(Preprocessor):
         return cell, resources
 
 
+@dataclass(frozen=True)
+class SampleSolutions:
+    """What was written, and what was not."""
+
+    paths: tuple[Path, ...]
+    """The notebooks that were written."""
+    left_out: tuple[str, ...]
+    """For each lesson without a solution, its name and the reason."""
+
+
 def write_solutions(
     course: Course, assignments: Sequence[str] = (), *, early: bool = False
-) -> list[Path]:
-    """Write gradebook/solutions/<assignment>.ipynb, by default for all; return the paths.
+) -> SampleSolutions:
+    """Write gradebook/solutions/<assignment>.ipynb, by default for each closed lesson.
 
-    A ROS package that is an answer is put beside its notebook. Raises CourseError, and writes
-    nothing, if a student may still hand in, unless `early`.
+    A ROS package that is an answer is put beside its notebook. With `early`, due dates do not
+    matter. Raises CourseError, and writes nothing, if one of `assignments` is open, or if all
+    lessons are.
     """
     wanted = assignments or course.assignments()
     sources = {assignment: course.source(assignment) for assignment in wanted}
-    if not early:
-        _refuse_before_the_deadline(course, wanted)
+    open_ones = {} if early else _find_open(course, wanted, are_named=bool(assignments))
+    if open_ones and (assignments or len(open_ones) == len(sources)):
+        raise CourseError(
+            f'no solution was written: {"; ".join(open_ones.values())}. --early writes it anyway'
+        )
     folder = course.gradebook / 'solutions'
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for assignment, source in sources.items():
+        if assignment in open_ones:
+            continue
         solved = apply_preprocessors(PASSES, source, resources_of(course, assignment))
         keep_outputs(solved, last_release(course, assignment), sanitizer_of(course))
         paths.append(folder / f'{assignment}.ipynb')
@@ -67,18 +84,26 @@ def write_solutions(
         for package in course.packages(assignment):  # the notebook looks for it beside itself
             place = course.source_path(assignment).parent / package
             package_files.write(package_files.read(place).taken, folder / package)
-    return paths
+    return SampleSolutions(tuple(paths), tuple(open_ones.values()))
 
 
-def _refuse_before_the_deadline(course: Course, assignments: Sequence[str]) -> None:
+def _find_open(course: Course, assignments: Sequence[str], *, are_named: bool) -> dict[str, str]:
+    """Return the lessons that can still be handed in, each with a text that says until when.
+
+    In a course with due dates, a lesson without one has not got it yet: it is open, too, unless
+    it `are_named`.
+    """
     found = deadlines(course.gradebook, course.assignments()) or Deadlines()
     now = datetime.now(UTC).replace(tzinfo=None)
+    open_ones = {}
     for assignment in assignments:
         extended = [until for (name, _), until in found.extended.items() if name == assignment]
-        last = max([*extended, found.due.get(assignment, now)])
-        if last > now:
+        if assignment not in found.due:
+            if found.due and not are_named:
+                open_ones[assignment] = f'{assignment} has no due date (./course due)'
+        elif (last := max([*extended, found.due[assignment]])) > now:
             until = last.replace(tzinfo=UTC).astimezone()
-            raise CourseError(
-                f'no solution was written: {assignment} can be handed in until '
-                f'{until:%Y-%m-%d %H:%M %Z}. --early writes it anyway'
+            open_ones[assignment] = (
+                f'{assignment} can be handed in until {until:%Y-%m-%d %H:%M %Z}'
             )
+    return open_ones
