@@ -1,9 +1,14 @@
 import io
+import signal
 import sys
 import threading
 import time
 from dataclasses import replace
 
+from course_maker import make_course, submit
+
+from grader.__main__ import main
+from grader.cli import grade_verb
 from grader.grading import SubmissionOutcome
 from grader.report import progress_table
 from grader.report.progress_table import print_rows, reason_in_a_line
@@ -74,3 +79,30 @@ def test_a_row_shows_the_late_penalty_and_whether_the_score_is_unchanged():
     assert reason_in_a_line(replace(row, stored=replace(late, former=2.3))) == (
         '(was 2.3) (late: -0.3) count again'
     )
+
+
+def test_a_row_counts_as_graded_if_ctrl_c_comes_right_after_it_is_printed(
+    monkeypatch, tmp_path, capsys
+):
+    course = make_course(tmp_path)
+    for name in ('ada', 'bob', 'eve'):
+        submit(course, name, b'')
+    monkeypatch.setattr(
+        grade_verb,
+        'grade_all',
+        lambda course, found, **_: (
+            SubmissionOutcome(each.student_id, each.assignment, SAID[each.student_id], '')
+            for each in found
+        ),
+    )
+
+    def write(line):
+        print(line)
+        if line.startswith('bob'):
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(progress_table.tqdm, 'write', write)
+    assert main(['grade'], course=course) == 128 + signal.SIGINT
+    said = capsys.readouterr()
+    assert [line.split()[0] for line in said.out.splitlines()] == ['student', 'ada', 'bob']
+    assert 'stopped. 2 of 3 submissions are graded and stored' in said.err

@@ -1,13 +1,14 @@
 """The work and output of `./course grade`: grade, or grade again with a seed and compare."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime
 
 from grader.common.argument_values import RECORDED
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.grade import grade_all
+from grader.grading import SubmissionOutcome
 from grader.kernels.isolation import (
     NO_SANDBOX,
     require_isolation,
@@ -62,12 +63,12 @@ def _run_grade(
         trust_students=asked.trust_students,
         force=asked.force,
     )
-    by_submission = {}
+    by_submission: dict[tuple[str, str], SubmissionOutcome] = {}
     if asked.trust_students and not require_isolation(trust_students=True):
         print(f'{NO_SANDBOX.capitalize()}, and student code has your rights (--trust-students).')
     try:
-        for row in print_rows(graded, submissions):
-            by_submission[row.student_id, row.assignment] = row  # a second one replaces the first
+        for _ in print_rows(_recorded(graded, by_submission), submissions):
+            pass
     except KeyboardInterrupt:
         graded.close()  # start nothing more, and end what runs, before the summary is printed
         summary = f'{len(by_submission)} of {len(submissions)} submissions are graded and stored'
@@ -90,6 +91,18 @@ def _run_grade(
         f'Report: {report}\nNext: {_BY_HAND * bool(waiting)}./course feedback, ./course scores'
     )
     return 1 if failed else 0
+
+
+def _recorded(
+    rows: Iterable[SubmissionOutcome], by_submission: dict[tuple[str, str], SubmissionOutcome]
+) -> Iterator[SubmissionOutcome]:
+    """Yield rows, each recorded before it is printed: it counts if Ctrl-C comes right after that.
+
+    A second row of a submission replaces the first.
+    """
+    for row in rows:
+        by_submission[row.student_id, row.assignment] = row
+        yield row
 
 
 def _replay(
