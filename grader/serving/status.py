@@ -1,12 +1,11 @@
 """The state of the resident process: lines for a terminal, and a self-contained HTML page."""
 
+import fcntl
 import time
 from collections.abc import Iterator, Mapping
 from datetime import datetime
 from html import escape
 from pathlib import Path
-
-from filelock import FileLock, Timeout
 
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
@@ -143,12 +142,14 @@ def _clock(at: float) -> str:
 
 
 def _is_served(course: Course) -> bool:
-    if not (course.gradebook / LOCK).exists():
-        return False
-    lock = FileLock(course.gradebook / LOCK, fallback_to_soft=False)
+    """Whether a process holds the lock; a file that is open only to read answers that, too."""
     try:
-        lock.acquire(timeout=0)
-    except Timeout:
-        return True
-    lock.release()
+        lock = (course.gradebook / LOCK).open('rb')
+    except FileNotFoundError:
+        return False
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
     return False
