@@ -160,6 +160,33 @@ def test_a_row_that_ends_early_has_empty_last_columns(course, roster):
     assert moodle_rows == [head.split(','), ['Participant 8002', 'Bob', '1.0', '']]
 
 
+def test_an_assignment_of_another_name_in_canvas_is_reported_with_what_to_do(
+    course, roster, capsys
+):
+    rows = canvas(
+        course,
+        '--roster',
+        roster(
+            'Student,ID,SIS Login ID,Section,Lab 3: Publisher (71),Lab 4 (72),Final Score',
+            'Bob,18152,bob,B,,,',
+        ),
+    )
+    assert rows[0] == ['Student', 'ID', 'SIS Login ID', 'Section', '03_publisher']
+    assert (
+        "03_publisher: roster.csv has no column '03_publisher (NUMBER)'. Its assignments: 'Lab 3: "
+        "Publisher (71)', 'Lab 4 (72)'. If one of them is meant, rename it to 03_publisher in "
+        'Canvas, export the gradebook again, and repeat this command'
+    ) in capsys.readouterr().out
+
+
+def test_many_assignments_of_other_names_are_not_all_listed(course, roster, capsys):
+    labs = ','.join(f'Lab {number} ({number})' for number in range(100))
+    canvas(course, '--roster', roster(f'Student,ID,Section,{labs}', 'Bob,18152,B'))
+    said = capsys.readouterr().out
+    assert "'Lab 19 (19)' and 80 more." in said
+    assert 'Lab 20' not in said
+
+
 def test_the_canvas_file_without_a_roster_uses_the_collected_numbers(course, capsys):
     assert canvas(course) == [
         ['Student', 'ID', 'Section', '03_publisher'],
@@ -200,6 +227,17 @@ def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
         ('moodle', ['ID,Vorname', '1,Ada'], "has no column 'Identifier', 'Full name'"),
         ('moodle', [''], "has no column 'Identifier'"),
         ('canvas', ['Student,ID,ID,Section'], 'has two columns of the same name'),
+        (
+            'canvas',
+            ['Name,ID,Section,03_publisher (7)', 'Ada,18151,,'],
+            "no column 'Student'. Found: 'Name', 'ID', 'Section', '03_publisher (7)'. Take the g",
+        ),
+        ('canvas', [''], "has no column 'Student', 'ID', 'Section'. Found: none. Take the g"),
+        (
+            'canvas',
+            ['Student,ID,Section,03_publisher (7),03_Publisher (8)', 'Ada,18151,,,'],
+            "has several columns for 03_publisher: '03_publisher (7)', '03_Publisher (8)'.",
+        ),
         ('canvas', ['Student,ID,Section', '"Ada,1,'], 'is not a CSV table'),
         (
             'moodle',

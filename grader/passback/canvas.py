@@ -17,12 +17,14 @@ from grader.course import Course
 from grader.passback.final_scores import AssignmentScores
 from grader.passback.import_files import ImportFile
 from grader.passback.numbered import table_by_number
-from grader.passback.roster import Roster, match, read_roster
+from grader.passback.roster import Roster, in_words, match, read_roster
 
 STUDENT, ID, SECTION = 'Student', 'ID', 'Section'
 NEEDED = (STUDENT, ID, SECTION)
 LOGIN = 'SIS Login ID'
 POINTS = 'Points Possible'
+_ASSIGNMENT = re.compile(r'.+ \(\d+\)', re.DOTALL)
+"""The heading of an assignment: its title, and its number in Canvas."""
 HOW = "Take the gradebook's own table: in Canvas, Gradebook, Export, Export Entire Gradebook"
 
 
@@ -31,7 +33,8 @@ def make_table(
 ) -> ImportFile:
     """Return the table to import; with Canvas's export, students and titles are taken from it.
 
-    Raises CourseError if the export can't be read, or gives an assignment other points.
+    If the export has no column of that name, a note says so. Raises CourseError if the export
+    can't be read, has several such columns, or gives an assignment other points.
     """
     if roster_path is None:
         return table_by_number(
@@ -50,7 +53,7 @@ def make_table(
         return known == row[ID] if known else student in (row.get(LOGIN), row[ID])
 
     people = [row for row in roster.rows if POINTS not in row[STUDENT]]
-    column = _column_of(scores.assignment, roster)
+    column, notes = _column_of(scores.assignment, roster)
     _check_points(column, scores, roster)
     found = match(
         [each.student_id for each in scores.final],
@@ -63,14 +66,31 @@ def make_table(
     for each in scores.final:
         if row := found.rows.get(each.student_id):
             rows.append([*(row.get(heading, '') for heading in about), each.score])
-    return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear)
+    return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear, notes)
 
 
-def _column_of(assignment: str, roster: Roster) -> str:
-    """Return an assignment's heading, such as '03_publisher (4711)'; its name if there is none."""
+def _column_of(assignment: str, roster: Roster) -> tuple[str, tuple[str, ...]]:
+    """Return an assignment's heading, such as '03_publisher (4711)', and a note if there is none.
+
+    Without one it is the assignment's name: an assignment may be new in Canvas. Raises CourseError
+    if there are several.
+    """
     titled = re.compile(rf'{re.escape(assignment)}( \(\d+\))?', re.I)
     found = [heading for heading in roster.headings if titled.fullmatch(heading)]
-    return found[0] if found else assignment
+    if len(found) > 1:
+        raise CourseError(
+            f'{roster.path} has several columns for {assignment}: {in_words(found)}. Expected '
+            'one: rename the other assignment in Canvas, and export the gradebook again'
+        )
+    if found:
+        return found[0], ()
+    others = [heading for heading in roster.headings if _ASSIGNMENT.fullmatch(heading)]
+    return assignment, (
+        f"{roster.path.name} has no column '{assignment} (NUMBER)'. Its assignments: "
+        f'{in_words(others)}. If one of them is meant, rename it to {assignment} in Canvas, '
+        'export the gradebook again, and repeat this command, or choose it when Canvas imports '
+        'the file and asks whether the assignment is new',
+    )
 
 
 def _check_points(column: str, scores: AssignmentScores, roster: Roster) -> None:

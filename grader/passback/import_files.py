@@ -12,3 +12,5 @@ class ImportFile:
     """How many students are in it."""
     left_out: tuple[str, ...]
     """For each student who has a score but is not in the table, the reason."""
+    notes: tuple[str, ...] = ()
+    """What a person should know before the platform imports it."""

@@ -8,8 +8,11 @@ from pathlib import Path
 
 from grader.common.errors import CourseError
 from grader.common.student_names import same_person
+from grader.common.text import shorten
 
 MAX_BYTES = 20_000_000
+MOST_NAMED, MOST_COLUMNS = 20, 60
+"""How many headings a message names, and how much of each, in columns of a terminal."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +45,21 @@ def read_roster(path: Path, needed: Iterable[str], how: str) -> Roster:
     headings = tuple(heading.strip() for heading in lines[0]) if lines else ()
     lacks = [name for name in needed if name not in headings]
     if lacks:
-        raise CourseError(f'{path} has no column {", ".join(map(repr, lacks))}. {how}')
+        raise CourseError(
+            f'{path} has no column {in_words(lacks)}. Found: {in_words(headings)}. {how}'
+        )
     if len(set(headings)) < len(headings):
         raise CourseError(f'{path} has two columns of the same name. {how}')
     none = dict.fromkeys(headings, '')  # a line may end early: its other columns are empty
     rows = [none | dict(zip(headings, line, strict=False)) for line in lines[1:] if any(line)]
     return Roster(path, headings, tuple(rows))
+
+
+def in_words(headings: Sequence[str]) -> str:
+    """Return headings as text, of many only the first ones."""
+    shown = ', '.join(repr(shorten(heading, MOST_COLUMNS)) for heading in headings[:MOST_NAMED])
+    more = len(headings) - MOST_NAMED
+    return f'{shown} and {more} more' if more > 0 else shown or 'none'
 
 
 @dataclass(frozen=True)

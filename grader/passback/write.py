@@ -27,7 +27,8 @@ def write_platform_scores(
     """Write the final scores of an assignment, or of all; return the paths.
 
     An assignment without a row gets no file. `say` gets a line for each student without a row,
-    with the reason. Raises CourseError if the roster does not fit, or if nothing is graded.
+    with the reason, and for what a person should know before the import. Raises CourseError if
+    the roster does not fit, or if nothing is graded.
     """
     found = final_scores(records(course), assignment)
     if assignment and not found:
@@ -49,7 +50,7 @@ def write_platform_scores(
             paths.append(path)
         for student in scores.waiting:
             say(f'{scores.assignment}: {student} needs manual grading in the formgrader')
-        for line in made.left_out:
+        for line in (*made.notes, *made.left_out):
             say(f'{scores.assignment}: {line}')
     return paths
 
