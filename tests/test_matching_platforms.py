@@ -191,6 +191,30 @@ def test_a_folder_named_after_no_known_student_is_taken_with_a_remark(at):
     assert hand_in.remark == "from a folder of their own, 'turtle-bot'"
 
 
+@pytest.mark.parametrize(
+    'upload', ['carol.zip', 'carol.zip/class', 'Carol_7_assignsubmission_file_/work.zip']
+)
+@pytest.mark.parametrize('own', ['carol', 'Carol', 'carol_02_joint_state'])
+@pytest.mark.parametrize('lesson', ['02_joint_state', '03_publisher'])
+def test_a_folder_beside_the_student_s_own_one_is_not_taken_as_theirs(upload, own, lesson, at):
+    hers, his = at(f'{upload}/{own}/02_joint_state.ipynb'), at(f'{upload}/dave/{lesson}.ipynb')
+    other = at('erin.zip/03_publisher.ipynb')
+    for among in ([], [other]):
+        taken, [(left, why)] = owners(hers, his, *among)
+        (who, assignment), *_ = taken
+        assert (who.lower(), assignment, len(taken)) == ('carol', '02_joint_state', 1 + len(among))
+        assert left == his.path
+        assert f'has a folder {who}, and dave beside it: if dave is another student' in why
+    apart = at(f'{own}/02_joint_state.ipynb'), at(f'dave/{lesson}.ipynb')  # as the reason says
+    taken, left = owners(*apart)
+    assert ([student.lower() for student, _ in taken], left) == (['carol', 'dave'], [])
+
+
+def test_folders_of_a_student_s_own_are_taken_if_none_has_the_student_s_name(at):
+    found = at('carol.zip/one/02_joint_state.ipynb'), at('carol.zip/two/03_publisher.ipynb')
+    assert owners(*found) == ([('carol', '02_joint_state'), ('carol', '03_publisher')], [])
+
+
 @pytest.mark.parametrize('wrapper', ['', 'download/'])
 def test_equal_names_with_different_numbers_are_left_to_a_person(wrapper, at):
     path = wrapper + 'Ada Lovelace_{}_assignsubmission_file_/{}.ipynb'

@@ -5,7 +5,7 @@ inside it were chosen by the student: they may agree, but never make it another 
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -54,11 +54,11 @@ class Naming:
     ) -> None:
         """Look at all collected files; `students` are those who are known already."""
         self._known = frozenset(assignments)
-        self._forms = NameForms(self._known)
+        self.forms = NameForms(self._known)
         notebooks = [each for each in found if is_notebook(each)]
         self._by_platform = self._all_by_platform(notebooks, list(students))
         self._shared = len(shared_folders([each.parts[:-1] for each in notebooks]))
-        named = (self._forms.parse_assignment_name(stem_of(each.parts[-1])) for each in notebooks)
+        named = (self.forms.parse_assignment_name(stem_of(each.parts[-1])) for each in notebooks)
         self._several = len({name.student for name in named if name}) > 1
 
     def owner(self, each: Incoming) -> Owner:
@@ -76,17 +76,17 @@ class Naming:
             inside = (_AGAIN.sub('', label.rest), *inside)
         if label and label.platform.numbers_copies:
             stem = _AGAIN.sub('', stem)
-        if parsed := self._forms.parse_exchange_name(name):
+        if parsed := self.forms.parse_exchange_name(name):
             if stem != parsed.assignment or inside:
                 raise UnclearOwner(f'in the exchange, {parsed.assignment}.ipynb was expected here')
             when = date_in(re.sub(r'(\d\d)_(\d\d)_(\d\d)', r'\1:\2:\3', parsed.time))
             return Owner(student_in(parsed.student), stem, True, when, above=above)
         assignment = self._assignment(stem, each.parts[:-1])
-        student = student_in(self._forms.student_of(name))
+        student = student_in(self.forms.student_of(name))
         if label and label.platform.names_files_only and not ARCHIVE.search(name):
             self._expect_no_class(student, label, each.parts[at + 1 : -1])
-        named = self._forms.parse_assignment_name(stem)
-        if named and not self._may_name(named.student, student):
+        named = self.forms.parse_assignment_name(stem)
+        if named and not self.may_name(named.student, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'
             where = f'in what {student} handed in' if label else where
             raise UnclearOwner(
@@ -103,22 +103,15 @@ class Naming:
             inside=inside,
         )
 
-    def claims(self, owner: Owner) -> Iterator[tuple[str, bool]]:
-        """Yield other students named in an upload, and if the name has a student's form."""
-        for name in owner.inside:
-            who = self._forms.student_of(name)
-            if not self._may_name(who, owner.student_id):
-                yield who, who != strip_archive_ending(name)
-
-    def _may_name(self, who: str, *students: str) -> bool:
+    def may_name(self, who: str, *students: str) -> bool:
         """Whether a folder's name may belong to these students: it does not name another one."""
         ours = (same_person(who, student) for student in students)
         return who in self._known or is_nobody(who) or any(ours)
 
     def _expect_no_class(self, student: str, label: PlatformLabel, folders: Sequence[str]) -> None:
         """Raise UnclearOwner if a folder named like an upload may contain a class."""
-        for who in map(self._forms.student_of, folders):
-            if not self._may_name(who, student, label.rest):
+        for who in map(self.forms.student_of, folders):
+            if not self.may_name(who, student, label.rest):
                 raise UnclearOwner(f'it may be of {student} or of {who}: {_SEVERAL}')
 
     def _deciding_index(self, each: Incoming) -> int | None:
@@ -137,9 +130,9 @@ class Naming:
                 raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
             return len(folders) if label_in(each.parts[-1]) else None
         first, *others = candidates
-        if label_in(folders[first]) or self._forms.parse_exchange_name(folders[first]):
+        if label_in(folders[first]) or self.forms.parse_exchange_name(folders[first]):
             return first
-        names = [self._forms.student_of(folders[at]) for at in (first, *others)]
+        names = [self.forms.student_of(folders[at]) for at in (first, *others)]
         if not all(same_person(name, names[0]) for name in names):
             raise UnclearOwner(f'it may be of {" or of ".join(names)}: {_SEVERAL}')
         return first
@@ -154,14 +147,14 @@ class Naming:
         assignment = self._assignment(stem, each.parts[:-1])
         if stem in self._known:
             raise UnclearOwner(f'nothing says whose it is: {EXPECTED}')
-        named = self._forms.parse_assignment_name(stem)
+        named = self.forms.parse_assignment_name(stem)
         assert named is not None  # or _assignment would have raised
         student = student_in(named.student)
         return Owner(student, assignment, by_folder=False, above=each.parts[:-1])
 
     def _assignment(self, stem: str, folders: Sequence[str]) -> str:
         """Return the assignment that a file is named after. Raises UnclearOwner."""
-        named = self._forms.parse_assignment_name(stem)
+        named = self.forms.parse_assignment_name(stem)
         if stem not in self._known and not named:
             near = [name for name in self._known if name.casefold() in stem.casefold()]
             known = ', '.join(sorted(near or self._known))
@@ -169,7 +162,7 @@ class Naming:
         assignment = named.assignment if named else stem
         for folder in reversed(folders):
             name = strip_archive_ending(folder)
-            of = self._forms.parse_assignment_name(name)
+            of = self.forms.parse_assignment_name(name)
             other = name if name in self._known else of.assignment if of else assignment
             if other != assignment:
                 raise UnclearOwner(f'it is in a folder of another assignment, {other}')
@@ -195,6 +188,6 @@ class Naming:
         """Return the index of the outermost component that a platform or the exchange named."""
         for at, part in enumerate(each.parts[: each.archive] or each.parts):
             is_folder = at < len(each.parts) - 1
-            if label_in(part) or (is_folder and self._forms.parse_exchange_name(part)):
+            if label_in(part) or (is_folder and self.forms.parse_exchange_name(part)):
                 return at
         return None

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
+from grader.collect.claims import Claims
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.naming import Naming, Owner
 from grader.common.student_names import UnclearOwner, spellings
@@ -28,9 +29,10 @@ def find_owners(
     for student in {*students, *(owner.student_id for owner in owners.values())}:
         for spelling in spellings(student):
             known[spelling].add(student)
+    claims = Claims(owners, naming, known)
     remarks = {}
     for each, owner in owners.items():
-        remarks[each], problem = _check_claims(owner, naming, known)
+        remarks[each], problem = claims.check(each, owner)
         if len(numbers[_namesake_key(owner)]) > 1:
             problem = _several_students_problem(owner)
         if problem:
@@ -86,20 +88,3 @@ def _other_spelling(student: str, known: Mapping[str, set[str]]) -> str:
     """Return a remark if another name may be this student's: the scores would be separate."""
     alike = set().union(*(known[spelling] for spelling in spellings(student))) - {student}
     return f'not the same as {", ".join(sorted(alike))}: if it is, rename one' if alike else ''
-
-
-def _check_claims(owner: Owner, naming: Naming, known: Mapping[str, set[str]]) -> tuple[str, str]:
-    """Compare the names inside an upload with its owner's; return a remark and a problem.
-
-    `known` has all students, by the spellings of their names.
-    """
-    whose, remark = owner.student_id, ''
-    for who, surely in naming.claims(owner):
-        others = set().union(*(known.get(spelling, ()) for spelling in spellings(who)))
-        if surely or others - {whose}:
-            return '', (
-                f"it lies in what {whose} handed in, under the name of {who}: if it is {whose}'s, "
-                'rename that; if others packed it, collect what they packed by itself'
-            )
-        remark = remark or f'from a folder of their own, {who!r}'
-    return remark, ''
