@@ -46,6 +46,7 @@ def at(tmp_path):
         'gradebook_ROS_Lab_2_ada_attempt_2026-01-02-03-04-05_02_joint_state.ipynb',
         'gradebook_ROS_Lab_2/Lab 2_ada_attempt_2026-01-02-03-04-05_02_joint_state.ipynb',
         'Lab 2_ada_attempt_2026-01-02-03-04-05_work.zip/02_joint_state.ipynb',
+        'ada/Late Submission - 02_joint_state.ipynb',
     ],
 )
 def test_student_and_assignment_are_found_in_the_path_of_a_notebook(path, at):

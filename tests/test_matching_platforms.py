@@ -104,6 +104,13 @@ FORGED = [
     f'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_work.zip/{HER_ATTEMPT}_03_publisher.ipynb',
     f'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_{ADA}03_publisher.ipynb',
     'Lab 3_evilmallory_attempt_2026-01-02-03-04-05_Ada Lovelace_03_publisher.ipynb',
+    'Evil_Mallory_mallory_666/Ada Lovelace/03_publisher.ipynb',
+    'Evil_Mallory_mallory_666/Ada Lovelace.zip/03_publisher.ipynb',
+    'Evil_Mallory_mallory_666/Ada Lovelace_03_publisher.ipynb',
+    'Evil_Mallory_mallory_666/work.zip/Lovelace_Ada_ada_4711/03_publisher.ipynb',
+    'Evil_Mallory_mallory_666/Late Submission - Ada Lovelace_03_publisher.ipynb',
+    f'{MALLORY}/Lovelace_Ada_ada_4711/03_publisher.ipynb',
+    f'{MALLORY}work.zip/Lovelace_Ada_ada_4711/03_publisher.ipynb',
     'Mallory Evil/Ada Lovelace/03_publisher.ipynb',
     'Mallory Evil/Ada Lovelace.zip/03_publisher.ipynb',
     'Mallory Evil/Ada Lovelace_03_publisher.ipynb',
@@ -176,6 +183,8 @@ def test_a_students_own_name_is_accepted_in_any_spelling(path, at):
         ('müllerjörg_LATE_71717_81818_Jörg Müller_03_publisher-3.ipynb', 'müllerjörg'),
         ('müllerjörg_71717_81818_homework-1.zip/03_publisher.ipynb', 'müllerjörg'),
         ('Participant_123_assignsubmission_file_/03_publisher.ipynb', 'Participant 123'),
+        ('Müller_Jörg_jmueller_4711/03_publisher.ipynb', 'Müller_Jörg'),
+        ('King_Ada Maria_ada-m.k_4711/Ada Maria King.zip/03_publisher.ipynb', 'King_Ada Maria'),
         ('作业 3_小明_attempt_2026-01-02-03-04-05_03_publisher.ipynb', '小明'),
     ],
 )
@@ -213,6 +222,45 @@ def test_a_folder_beside_the_student_s_own_one_is_not_taken_as_theirs(upload, ow
 def test_folders_of_a_student_s_own_are_taken_if_none_has_the_student_s_name(at):
     found = at('carol.zip/one/02_joint_state.ipynb'), at('carol.zip/two/03_publisher.ipynb')
     assert owners(*found) == ([('carol', '02_joint_state'), ('carol', '03_publisher')], [])
+
+
+ILIAS = 'Lovelace_Ada_ada_4711', 'Babbage_Charles_cbabbage_4712'
+
+
+@pytest.mark.parametrize(
+    'form',
+    [
+        '{0}/{1}.ipynb',
+        'Joint states/Abgaben/{0}/{1}.ipynb',
+        '{1} of the week/Submissions/{0}/{1}.ipynb',
+        'Joint states/Abgaben/Team {1}/{0}/{1}.ipynb',
+        '{0}/Late Submission - {1}.ipynb',
+        'Joint states/Abgaben/{0}/Verspatete Abgabe - {1} (2).ipynb',
+        '{0}/work.zip/my work/{1}.ipynb',
+        '{0}/Verspaetete Abgabe - {1}.zip/{1}.ipynb',
+    ],
+)
+def test_students_are_found_in_the_download_of_all_submissions_of_ilias(form, at):
+    lessons = '02_joint_state', '03_publisher'
+    found = [at(form.format(*each)) for each in zip(ILIAS, lessons, strict=True)]
+    students = [('Babbage_Charles', '03_publisher'), ('Lovelace_Ada', '02_joint_state')]
+    assert owners(*found) == (students, [])
+    assert owners(*found, students=['ada', 'Lovelace_Ada']) == (students, [])
+
+
+def test_files_that_come_late_in_ilias_keep_the_names_that_students_gave_them(at):
+    late = f'{ILIAS[0]}/Late Submission - '
+    files = [at(late + name) for name in ('02_joint_state.ipynb', 'helper.py')]
+    package = at(f'{late}arm.zip/package.xml')
+    needed = {'02_joint_state': ['arm']}
+    (hand_in,), left = match([*files, package], ASSIGNMENTS, packages=needed)
+    assert (sorted(hand_in.extra), left) == (['arm/package.xml', 'helper.py'], [])
+
+
+@pytest.mark.parametrize('folder', ['ros_kurs_b_101', 'Robotik_Gruppe_A_2026', 'ros_ws_2026_101'])
+def test_a_class_in_a_folder_named_as_in_ilias_is_not_taken_as_a_student(folder, at):
+    taken, _ = owners(*(at(f'{folder}/{who}/03_publisher.ipynb') for who in ('ada', 'bob')))
+    assert {student for student, _ in taken} <= {'ada', 'bob'}
 
 
 @pytest.mark.parametrize('wrapper', ['', 'download/'])

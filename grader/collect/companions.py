@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from grader.collect.incoming import Incoming
+from grader.collect.name_forms import strip_late_mark
 from grader.collect.naming import Owner
 from grader.collect.owners import foreign_file_reason
 from grader.collect.package_folders import (
@@ -89,7 +90,11 @@ def find_companions(
         if number or has_folder
     }
     return Companions(
-        modules={n: e for n, e in files.items() if n.endswith('.py') and not problem_of_id(n)},
+        modules={
+            strip_late_mark(name): each
+            for name, each in files.items()
+            if name.endswith('.py') and not problem_of_id(name)
+        },
         packages={
             n: (there, choose_files(there, owner.student_id))
             for n, there in found.items()

@@ -13,6 +13,9 @@ _COPY_OF = r'(?:(?:copy of|kopie von|copie de|copia de|copia di) )+'
 _COPY = re.compile(rf'^{_COPY_OF}|(?<= ){_COPY_OF}$', re.IGNORECASE)
 """What Google Drive writes before the name of a file, or of the student's own copy of it."""
 
+_LATE = re.compile(r'^(late submission|versp(ä|ae?)tete abgabe) - ', re.IGNORECASE)
+"""What ILIAS, in English and in German, writes before the name of a file that comes late."""
+
 
 @dataclass(frozen=True)
 class AssignmentName:
@@ -74,15 +77,20 @@ class NameForms:
 
 
 def stem_of(name: str) -> str:
-    """Return a notebook's name without .ipynb and a browser's ` (1)` before it."""
-    return re.sub(r' \(\d+\)$', '', name[: -len('.ipynb')])
+    """Return a notebook's name without .ipynb, ` (1)` before it and ILIAS's mark of lateness."""
+    return re.sub(r' \(\d+\)$', '', strip_late_mark(name[: -len('.ipynb')]))
+
+
+def strip_late_mark(name: str) -> str:
+    """Return a file's name without what ILIAS writes before it if it comes late."""
+    return _LATE.sub('', name)
 
 
 def strip_archive_ending(name: str) -> str:
-    """Return a folder's name, or an archive's without its ending and a browser's ` (1)`."""
+    """Return a folder's name, or an archive's without ending, ` (1)` and mark of lateness."""
     if not ARCHIVE.search(name):
         return name
-    return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', name))
+    return re.sub(r' \(\d+\)$', '', ARCHIVE.sub('', strip_late_mark(name)))
 
 
 def shared_folders(folders: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

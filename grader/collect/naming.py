@@ -83,8 +83,10 @@ class Naming:
             return Owner(student_in(parsed.student), stem, True, when, above=above)
         assignment = self._assignment(stem, each.parts[:-1])
         student = student_in(self.forms.student_of(name))
-        if label and label.platform.names_files_only and not ARCHIVE.search(name):
-            self._expect_no_class(student, label, each.parts[at + 1 : -1])
+        if label and label.platform.may_be_class and not ARCHIVE.search(name):
+            # without a name of the student's, it holds what was handed in, also archives
+            end = each.archive - 1 if each.archive and not label.rest else -1
+            self._expect_no_class(student, label, each.parts[at + 1 : end])
         named = self.forms.parse_assignment_name(stem)
         if named and not self.may_name(named.student, student):
             where = f'in the archive of {student}' if each.archive else f'in a folder {student}'

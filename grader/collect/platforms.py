@@ -28,9 +28,8 @@ class Platform:
     """Whether it appends -1, -2, … to the name of a file that is handed in again."""
     is_plain: bool = False
     """Whether an upload can be collected by itself: nothing else has a name of this form."""
-    names_files_only: bool = False
-    """Whether it gives no folder a name: a folder with a name of its form is an unpacked upload,
-    or a teacher's folder whose class happens to have such a name."""
+    may_be_class: bool = False
+    """Whether a teacher's folder may happen to have a name of its form, that of a class."""
 
 
 # Each form matches as little as possible before `rest`, which the student chose.
@@ -50,7 +49,7 @@ PLATFORMS = (
         ),
         number_of='student',
         numbers_copies=True,
-        names_files_only=True,
+        may_be_class=True,  # it gives no folder a name: such a folder may be an unpacked upload
     ),
     # Blackboard has no numbers: the text before the time tells a_lovelace and b_lovelace apart
     Platform(
@@ -61,6 +60,16 @@ PLATFORMS = (
         number_of='download',
         time_format='%Y-%m-%d-%H-%M-%S',
         is_plain=True,
+    ),
+    # ILIAS names only folders, LASTNAME_FIRSTNAME_LOGIN_NUMBER, without a time; a class's folder
+    # has no number with three digits that is not a year, after a word with a letter
+    Platform(
+        name='ilias',
+        form=re.compile(
+            r'(?P<student>[^_]+_[^_]+)_[^_]*[^\W\d_][^_]*_(?!(19|20)\d\d$)(?P<number>\d{3,})(?P<rest>)'
+        ),
+        number_of='student',
+        may_be_class=True,
     ),
 )
 _ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
@@ -90,7 +99,7 @@ def label_in(name: str) -> PlatformLabel | None:
         (match.end('student'), place, match)
         for place, platform in enumerate(PLATFORMS)
         if (match := platform.form.fullmatch(name))
-        and not (platform.names_files_only and _is_class(match))
+        and not (platform.may_be_class and _is_class(match))
     ]
     if not found:
         return None

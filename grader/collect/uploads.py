@@ -11,6 +11,7 @@ from grader.collect.archive_entries import ARCHIVE
 from grader.collect.archives import unpack
 from grader.collect.incoming import Incoming, as_json, from_json
 from grader.collect.live_folders import ONE, LiveFolder
+from grader.collect.name_forms import strip_late_mark
 from grader.collect.platforms import label_in
 from grader.collect.unpack_limits import UnpackLimits
 from grader.common.errors import CourseError
@@ -104,7 +105,7 @@ def is_wanted(parts: tuple[str, ...], packages: Collection[str] = ()) -> bool:
 def package_in(folder: str) -> str:
     """Return the name of the package that a folder or an archive may contain."""
     label = label_in(folder)
-    name = ARCHIVE.sub('', (label and label.rest) or folder)
+    name = strip_late_mark(ARCHIVE.sub('', (label and label.rest) or folder))
     return re.sub(r'(-\d+| \(\d+\))$', '', name)
 
 
