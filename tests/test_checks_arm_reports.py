@@ -94,6 +94,27 @@ def test_feedback_that_stops_before_the_end_has_a_pause():
         reported.expect_enough()
 
 
+@pytest.mark.parametrize(('silent_sec', 'is_right'), [(0.3, True), (0.4, False)])
+def test_feedback_has_to_come_from_the_start_of_the_move_on(silent_sec, is_right):
+    times, parts = evenly(20.0)
+    first = round(silent_sec * 1e9 / STEP_NS)
+    reported = report(parts[first:], times[first:], DRIVEN)
+    reported.expect_enough()
+    told = []
+    try:
+        reported.expect_steady()
+    except CheckFailed as failure:
+        told.append(str(failure))
+    assert ['from the start of the move' in each for each in told] == [True] * (not is_right)
+
+
+def test_a_short_move_that_begins_late_has_as_much_feedback_as_a_long_one():
+    times, parts = evenly(3.0)
+    reported = report(parts, [5.0 + each for each in times], DRIVEN)
+    reported.expect_enough()
+    reported.expect_steady()
+
+
 @pytest.mark.parametrize(('copies', 'is_right'), [(2, True), (4, True), (10, False)])
 def test_feedback_may_repeat_a_position_but_not_for_long(copies, is_right):
     times, parts = evenly(20.0)

@@ -10,11 +10,22 @@ ON_LINE_RAD = 0.01
 """How far a position may be off the straight line."""
 
 
+def parts_of_way(
+    positions: np.ndarray, start: Sequence[float], end: Sequence[float]
+) -> np.ndarray:
+    """Which part of the way from `start` to `end` is done at each of the positions, a row each.
+
+    The joint that moves farther shows it.
+    """
+    begin, ways = np.array(start), np.array(end) - np.array(start)
+    joint = int(np.abs(ways).argmax())
+    return np.asarray((positions[:, joint] - begin[joint]) / ways[joint])
+
+
 def off_line(positions: np.ndarray, start: Sequence[float], end: Sequence[float]) -> np.ndarray:
     """How far each of the positions, a row each, is from the line from `start` to `end`."""
     begin, ways = np.array(start), np.array(end) - np.array(start)
-    joint = int(np.abs(ways).argmax())
-    parts = np.clip((positions[:, joint] - begin[joint]) / ways[joint], 0.0, 1.0)
+    parts = np.clip(parts_of_way(positions, start, end), 0.0, 1.0)
     return np.asarray(np.abs(positions - (begin + parts[:, None] * ways)).max(axis=1))
 
 

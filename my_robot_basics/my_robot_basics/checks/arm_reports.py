@@ -9,7 +9,7 @@ import numpy as np
 from my_robot_basics.checks import periods
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action
-from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, why_off_line
+from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, parts_of_way, why_off_line
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_remaining import expect_remaining
 from my_robot_basics.checks.arm_results import IN_DEGREES
@@ -25,6 +25,7 @@ FLOOD_HZ = 500.0
 NO_WAIT = (
     'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
 )
+EACH_STEP = 'publish feedback in each step of the move'
 NONE = 'call goal_handle.publish_feedback(…) in each step of the move'
 NONE_BLOCKED = (
     'call goal_handle.publish_feedback(…) in each step of the move; if you do, no step waits, and '
@@ -86,7 +87,7 @@ class MoveReport:
                 cause='there is no feedback',
             )
         seconds = self.arm.seconds(self.sent)
-        if count < FEWEST or self._rate_hz(seconds) < LEAST_HZ:
+        if count < FEWEST or self._rate_hz() < LEAST_HZ:
             one, many = f'1 message in {seconds:.1f} s', f'{count} messages in {seconds:.1f} s'
             fail(
                 expected=f'feedback at {WANTED_HZ:g} Hz or more',
@@ -101,9 +102,7 @@ class MoveReport:
             fail(
                 expected=f'feedback at {WANTED_HZ:g} Hz or more',
                 seen=f'a pause of {gap_sec:.1f} s',
-                hint=NO_WAIT
-                if count > FLOOD_HZ * self.arm.seconds(self.sent)
-                else 'publish feedback in each step of the move',
+                hint=NO_WAIT if count > FLOOD_HZ * self.arm.seconds(self.sent) else EACH_STEP,
                 cause='there are pauses in the feedback',
                 doubt=self.arm.doubt(self.sent, self.end),
             )
@@ -134,8 +133,11 @@ class MoveReport:
             )
 
     def expect_steady(self) -> None:
-        """Expect the arm to move along the line at one speed. Raises CheckFailed."""
-        parts = self._parts(self._positions())
+        """Expect the arm to move along the line at one speed, and feedback from its start on.
+
+        Raises CheckFailed.
+        """
+        parts = parts_of_way(self._positions(), self.arm.start, self.end)
         on_the_way = parts < 1.0 - 1e-6
         times, parts = self.times[on_the_way], parts[on_the_way]
         if len(times) < FEWEST:
@@ -150,18 +152,26 @@ class MoveReport:
             self._fail_steady(
                 'the same position is published for a while: compute it anew for each feedback'
             )
+        silent_sec = parts[0] * np.ptp(times) / np.ptp(parts)
+        if silent_sec > LARGEST_GAP_SEC:
+            fail(
+                expected='feedback from the start of the move on',
+                seen=f'the first one {silent_sec:.1f} s after it',
+                hint=EACH_STEP,
+                cause='there is no feedback at the start of the move',
+                doubt=self.arm.doubt(),
+            )
 
     def expect_remaining(self) -> None:
         """Expect the right `remaining` in each message. Raises CheckFailed."""
         told = np.array([message.remaining for message in self.messages])
         expect_remaining(told, self._positions(), start=self.arm.start, end=self.end)
 
-    def _rate_hz(self, seconds: float) -> float:
-        """The rate of the feedback; on the wall clock, the one of the loop without its delays."""
+    def _rate_hz(self) -> float:
+        """The rate from the first message to the last; on the wall clock, without delays."""
         if not self.arm.time.is_driven:
             return 1.0 / max(periods.intended_period(self.times), 1e-9)
-        count = len(self.times)
-        return min((count - 1) / max(np.ptp(self.times), 1e-9), count / seconds)
+        return (len(self.times) - 1) / max(float(np.ptp(self.times)), 1e-9)
 
     def _longest_same_sec(self) -> float:
         """For how long feedback told one position before it told another, in seconds."""
@@ -171,11 +181,6 @@ class MoveReport:
 
     def _positions(self) -> np.ndarray:
         return np.array([list(message.position) for message in self.messages])
-
-    def _parts(self, positions: np.ndarray) -> np.ndarray:
-        ways = np.array(self.end) - np.array(self.arm.start)
-        joint = int(np.abs(ways).argmax())
-        return np.asarray((positions[:, joint] - self.arm.start[joint]) / ways[joint])
 
     def _fail_position(self, seen: Sequence[float], hint: str, expected: str) -> None:
         fail(
