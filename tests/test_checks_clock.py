@@ -11,6 +11,7 @@ from my_robot_basics.checks import (
     barriers,
     clock,
     clock_budget,
+    clock_use,
     driven_topic,
     drives,
     due_ticks,
@@ -27,6 +28,7 @@ from rclpy.clock import ClockType
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import Empty
 
@@ -143,6 +145,22 @@ def test_a_clock_publisher_that_only_the_notebook_knows_prevents_simulation(monk
     monkeypatch.setattr(student, 'publishes', lambda topic_name: topic_name == '/clock')
     with Watcher() as watcher, pytest.raises(clock.Inconclusive, match='another node publishes'):
         clock.SimulatedClock(watcher, needed=set()).__enter__()
+
+
+@pytest.mark.parametrize('was_switched', [False, True])
+def test_a_node_that_waits_for_a_clock_of_its_own_accord_fails(monkeypatch, was_switched):
+    # after a check that was not able to switch it back, it is not the node's own doing
+    monkeypatch.setattr(clock_use, '_switched', {'/late'} if was_switched else set())
+    late = Parameter('use_sim_time', value=True)
+    fails = pytest.raises(CheckFailed, match='leave use_sim_time out')
+    with (
+        spinning(lambda context: Node('late', context=context, parameter_overrides=[late])),
+        Watcher() as watcher,
+        contextlib.nullcontext() if was_switched else fails,
+        clock.SimulatedClock(watcher, needed={'/late'}) as simulated,
+    ):
+        simulated.tick(10**8)
+    assert clock_use._switched == {'/late'}
 
 
 def test_a_clock_publisher_that_appears_during_simulation_stops_it():

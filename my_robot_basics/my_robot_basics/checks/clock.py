@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 
 from my_robot_basics.checks.barriers import SLOWEST_BARRIER_SEC, Barriers
 from my_robot_basics.checks.clock_budget import ClockBudget
-from my_robot_basics.checks.clock_use import ANOTHERS, why_not_driven
+from my_robot_basics.checks.clock_use import ANOTHERS, expect_wall_clock, why_not_driven
 from my_robot_basics.checks.inconclusive import Inconclusive, TooSlow
 from my_robot_basics.checks.parameter_services import (
     is_refused,
@@ -29,8 +29,7 @@ from my_robot_basics.checks.parameter_services import (
 from my_robot_basics.graph.watcher import Watcher
 
 FIRST_ANSWER_SEC = 1.0
-"""How long a node may take to answer at first, in seconds of free time: on a busy machine, even a
-correct node is slow."""
+"""How long a node may take to answer at first, in s of free time: a busy machine is slow."""
 RESTORE_SEC = 10.0
 LONG_SEC = 3.0
 """A node that needs more free time than this to be driven is slow: a tick of some rclpy nodes with
@@ -166,6 +165,7 @@ class SimulatedClock:
             name: any(value.bool_value for value in reply.values)
             for name, reply in answered.items()
         }
+        expect_wall_clock(self._former, self._needed)
         self.now_ns = max(time.time_ns(), _latest_ns)
         switched = set_use_sim_time(self._setters, dict.fromkeys(self._former, True))
         self._watcher.spin_until_free(_all_done(switched.values()), free_sec=FIRST_ANSWER_SEC)

@@ -1,13 +1,18 @@
-"""Whether checks drive the robot's clock at all in this process."""
+"""Whether checks drive the robot's clock at all in this process, and for which nodes."""
+
+from collections.abc import Collection, Mapping
 
 from rclpy.node import Node
 
 from my_robot_basics.exchange import student
+from my_robot_basics.feedback.errors import expect
 
 LEFT_ALONE = "the nodes' clocks are left alone"
 ANOTHERS = 'another node publishes /clock'
 
 _are_left_alone = False
+_switched: set[str] = set()
+"""The full names of all nodes that checks have switched to `/clock` in this process."""
 
 
 def leave_alone() -> None:
@@ -31,3 +36,22 @@ def why_not_driven(node: Node) -> str:
         return LEFT_ALONE
     is_anothers = node.count_publishers('/clock') or student.publishes('/clock')
     return ANOTHERS if is_anothers else ''
+
+
+def expect_wall_clock(former: Mapping[str, bool], needed: Collection[str]) -> None:
+    """Expect nodes not to have use_sim_time of their own. Raises CheckFailed.
+
+    Nobody but a check publishes `/clock`, so their time would stand still. `former` has the
+    use_sim_time of each node before it is switched. A node that was switched before may have its
+    own from that time: on a busy machine, it may not get the former one back.
+    """
+    waiting = sorted(name for name in needed if former[name] and name not in _switched)
+    _switched.update(former)
+    expect(
+        not waiting,
+        expected="a node on the computer's clock",
+        seen=f'{", ".join(waiting)} with use_sim_time',
+        hint='leave use_sim_time out: such a node waits for /clock, which only a simulator '
+        'publishes, and its timers are never called',
+        cause='the node has use_sim_time, and nobody publishes /clock',
+    )
