@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 from my_robot_basics.checks import followed_clocks
 from my_robot_basics.checks.robot_time import DrivenTime
+from my_robot_basics.session import pressure
 
 
 class Clock(DrivenTime):
@@ -13,9 +14,10 @@ class Clock(DrivenTime):
     def __init__(self, told, comes):
         self.told, self.comes = told, comes
 
-    def hold(self, seconds):
-        assert seconds > 0.0
+    def hold(self, done, *, free_sec, wall_sec):
+        assert 0.0 < free_sec < wall_sec
         self.told += ['…'] * self.comes
+        return done()
 
 
 @pytest.mark.parametrize(
@@ -29,6 +31,21 @@ def test_a_slow_arm_that_pauses_with_the_clock_follows_it(monkeypatch, is_slow, 
     arm = SimpleNamespace(time=Clock(told, comes))
     sent = SimpleNamespace(feedback_count=lambda: len(told))
     assert followed_clocks._moves_with_clock(arm, sent, (1.0, -0.5)) == follows
+
+
+@pytest.mark.parametrize(
+    ('after_sec', 'stalled_share', 'is_done'),
+    [(0.3, 0.0, True), (0.7, 0.0, False), (0.7, 1.0, True), (1.3, 1.0, False)],
+)
+def test_a_clock_is_held_longer_on_a_busy_machine(monkeypatch, after_sec, stalled_share, is_done):
+    now = [0.0]
+    clock = SimpleNamespace(hold=lambda seconds: now.__setitem__(0, now[0] + seconds), now_ns=0)
+    monkeypatch.setattr(pressure, 'time', SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: stalled_share * now[0])
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: now[0])
+    time = DrivenTime(SimpleNamespace(), clock, step_ns=50_000_000, beat=lambda: 0)
+    held = time.hold(lambda: now[0] >= after_sec, **followed_clocks.HELD_SEC)
+    assert held == is_done
 
 
 @pytest.mark.parametrize(

@@ -27,9 +27,11 @@ PROBE_ASK_SEC = 0.1
 """How long after the start of the probe the node is asked for a parameter, in seconds."""
 CLOCK_PROBE_SEC, CLOCK_PROBE_MOST_SEC = 2.0, 6.0
 """How long a probe is to take on the robot's clock, and may take at most, in seconds of it."""
-HOLD_SEC, APART_SEC = 0.4, 0.2
-"""How long the clock is held to see whether a server ignores it, in seconds of wall time. Then a
-server that reports positions over APART_SEC off its own clock computes with the wall clock."""
+HELD_SEC = {'free_sec': 0.4, 'wall_sec': 1.0}
+"""How long the clock is held to see whether a server ignores it: at most half of a probe, because
+the feedback after that shows whether it computes with the wall clock."""
+APART_SEC = 0.2
+"""A server that reports positions over APART_SEC off its own clock then does so."""
 STEPS, STEPS_SEC = 4, 1.0
 """If the arm moves on in each of STEPS steps while the robot's clock is held, the server uses the
 wall clock alone. The check waits for these steps for STEPS_SEC of free time."""
@@ -102,8 +104,7 @@ def _measure_clock_of_move(arm: WatchedArm) -> FollowedClock:
         assert isinstance(driven.time, DrivenTime)
         probe = _probe(driven, CLOCK_PROBE_SEC)
         sent = driven.send(probe)
-        driven.time.hold(HOLD_SEC)
-        if sent.is_over() or sent.feedback_count() > 1:
+        if driven.time.hold(lambda: sent.is_over() or sent.feedback_count() > 1, **HELD_SEC):
             return FollowedClock.WALL_ALONE if _moves_on(driven, sent) else FollowedClock.WALL
         ends = driven.time.wait(sent.is_over, seconds=CLOCK_PROBE_MOST_SEC)
         if is_of_wall_time(driven, sent, probe.position, apart_sec=APART_SEC):
@@ -144,8 +145,7 @@ def _moves_with_clock(arm: WatchedArm, sent: SentGoal, position: Pose) -> bool:
         return False
     count = sent.feedback_count()
     assert isinstance(arm.time, DrivenTime)
-    arm.time.hold(HOLD_SEC)
-    return sent.feedback_count() - count <= 1
+    return not arm.time.hold(lambda: sent.feedback_count() - count > 1, **HELD_SEC)
 
 
 def _keeps_up_with_fine_steps(time: DrivenTime, sent: SentGoal) -> bool:

@@ -18,6 +18,8 @@ PUSH_SEC = 0.001
 """The wall time between the steps of `push`."""
 PUSHED_TIMES = 5
 """How many times as long `push` may take on a busy machine."""
+HOLD_SEC = 0.05
+"""`hold` looks after so much wall time whether it is done."""
 MOST_OFF_NS = 1_000_000_000
 """A node on this clock never differs from it by more; before its first `/clock` it shows 0."""
 
@@ -117,9 +119,18 @@ class DrivenTime:
         if abs(node_ns - self.now_ns()) > MOST_OFF_NS:
             raise Inconclusive("the node's clock shows another time")
 
-    def hold(self, seconds: float) -> None:
-        """Let the clock stand still for `seconds` of wall time."""
-        self._clock.hold(seconds)
+    def hold(self, done: Callable[[], bool], *, free_sec: float, wall_sec: float) -> bool:
+        """Let the clock stand still until `done()`; return whether it is done in time.
+
+        It may take `free_sec` of free time, and no more than `wall_sec` of wall time: on a busy
+        machine, a thread that ignores this clock may wait for a processor.
+        """
+        watch = Stopwatch()
+        while not done():
+            if watch.free_sec() >= free_sec or watch.wall_sec() >= wall_sec:
+                return False
+            self._clock.hold(HOLD_SEC)
+        return True
 
     def push(self, done: Callable[[], bool], *, free_sec: float) -> bool:
         """Step without waiting for the node until `done()`; return whether it is done in time.
