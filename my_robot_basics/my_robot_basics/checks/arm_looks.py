@@ -14,6 +14,7 @@ from my_robot_basics.checks.arm_progress import bring
 from my_robot_basics.checks.followed_clocks import FINE_NS, measure_clock, run_on_driven_clock
 from my_robot_basics.checks.goal_answers import Identity
 from my_robot_basics.checks.inconclusive import Inconclusive
+from my_robot_basics.checks.missing_awaits import naming_missing_await
 from my_robot_basics.checks.robot_time import WallTime
 from my_robot_basics.checks.watched_arm import STEP_NS, Pose, WatchedArm
 from my_robot_basics.feedback.hidden import is_validating
@@ -34,7 +35,7 @@ def look(action: Action, body: Callable[[WatchedArm], T], *, start: Pose) -> T:
     `body` runs on the robot's clock if the node follows it; else, or if that clock can't be
     driven, on the wall clock. Raises what `body` raises.
     """
-    with action.opened() as server:
+    with naming_missing_await(), action.opened() as server:
         on_wall = WatchedArm(server, WallTime(server.watcher), tuple(start), WALL_SEC)
         bring(on_wall, start)
         clock = _followed_clock(action, on_wall)

@@ -41,6 +41,16 @@ def blocking_line(node_name: str) -> str:
     return shorten(body) if isinstance(body, str) else ''
 
 
+def not_awaited() -> tuple[str, int, str]:
+    """Return the coroutine that the answer has called without `await`, and the line of the call.
+
+    The name is '' if the notebook reports none.
+    """
+    body = reply_value(wire.request(op='not_awaited', name=wire.THREADS))
+    is_told = isinstance(body, tuple) and [type(part) for part in body] == [str, int, str]
+    return (shorten(body[0], 60), body[1], shorten(body[2], 120)) if is_told else ('', 0, '')
+
+
 def how_answer_ended() -> tuple[str, str, str]:
     """Return which node a later cell has ended, the node that took its place, and their name.
 

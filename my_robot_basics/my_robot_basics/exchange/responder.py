@@ -86,6 +86,12 @@ def _how_answer_ended(_: str) -> tuple[str, str, str]:
     return answer_end.how_answer_ended() if answer_end else ('', '', '')
 
 
+def _not_awaited(_: str) -> tuple[str, int, str]:
+    """Return the coroutine that the answer has called without `await`, and the line of it."""
+    unawaited = sys.modules.get('my_robot_basics.live.unawaited')
+    return unawaited.first() if unawaited else ('', 0, '')
+
+
 def _blocking_line(node_name: str) -> str:
     """Return the line at which a callback blocks a node that `live` spins, or ''."""
     troubles = sys.modules.get('my_robot_basics.live.troubles')
@@ -130,6 +136,7 @@ _OTHERS: dict[str, Callable[..., object]] = {
     'raised': _last_raised_ns,
     'field': _unpublished_field,
     'unfinished': _blocking_line,
+    'not_awaited': _not_awaited,
     'ended': _how_answer_ended,
     'clock': _set_use_sim_time,
     'package': _ask_package,

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable
 from functools import partial
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -91,6 +91,14 @@ def fail(
     failure = Failure(sentence)
     failure.repeat = partial(fail, expected=expected, seen=seen, hint=hint, cause=cause)
     raise failure
+
+
+def fail_with_hint(failure: CheckFailed, hint: str) -> NoReturn:
+    """Raise the same failure with another hint; unchanged if `fail` did not raise it."""
+    told: dict[str, Any] = getattr(failure.repeat, 'keywords', {})
+    if not told or isinstance(failure, PartlyRight):
+        raise failure
+    fail(**told | {'hint': hint, 'doubt': type(failure)})
 
 
 def shorten(text: object, most: int = MOST_CHARACTERS) -> str:

@@ -171,8 +171,8 @@ def has_chosen_inputs(outputs: Iterable[Any]) -> bool:
 
 
 def details_in(outputs: Iterable[Any]) -> str:
-    """Return the sentence for the instructor in a cell's outputs, or ''."""
-    return next(iter(_data(outputs, _DETAILS)), '')[:MOST_DETAILS]
+    """Return the last sentence for the instructor in a cell's outputs, or ''."""
+    return next(reversed(_data(outputs, _DETAILS)), '')[:MOST_DETAILS]
 
 
 def visible_outputs(outputs: Sequence[Any]) -> list[Any]:

@@ -6,7 +6,14 @@ from typing import Any
 import psutil
 from rclpy.node import Node
 
-from my_robot_basics.live import answer_end, course_nodes, outdated, runner, troubles
+from my_robot_basics.live import (
+    answer_end,
+    course_nodes,
+    outdated,
+    runner,
+    troubles,
+    unawaited,
+)
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
@@ -59,6 +66,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
         raise NotRunnable(f'expected {name} to be your own, saw {taken}: {course_nodes.HOW}')
     answer_end.watch_answer(answer.__name__)
     outdated.watch()
+    unawaited.watch()
     with course_nodes.refuse_course_nodes():
         node = runner.run(answer, *args, **kwargs)
     _refuse_programs()
