@@ -34,6 +34,7 @@ STARTING_FILES = frozenset(
     checks_clock checks_latched checks_logs checks_sampling checks_predictions checks_relays
     checks_relays_lost checks_relays_stopped checks_servers checks_services checks_settled
     checks_delivery_experiment checks_stamps checks_tick checks_topics checks_watcher
+    checks_untouched
     course course_checks course_setup crowd dask_backend doctor_faults doctor_healthy
     doctor_service_faults doctor_service_healthy doctor_actions
     executables execute grade gradebook imports

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import nbformat
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import LANGUAGE, language_of
-from my_robot_basics.validate.cells import KEY, grade_id, role, roles, title_of
+from my_robot_basics.validate.cells import KEY, fingerprint, grade_id, role, roles, title_of
+from my_robot_basics.validate.unanswered import RELEASED
 from nbformat import NotebookNode
 
 NO_ANSWERS = (
@@ -49,11 +50,12 @@ def make_template(source: NotebookNode, release: NotebookNode) -> AssignmentTemp
     released = {name: cell.source for cell in release.cells if (name := grade_id(cell))}
     notebook = nbformat.from_dict(source)
     for cell, kind in zip(notebook.cells, roles(notebook), strict=True):
+        cell.metadata[KEY] = {'role': kind}
         if kind == 'answer':
             cell.source = released.get(grade_id(cell) or '', '')
+            cell.metadata[KEY][RELEASED] = fingerprint(cell.source)
         if cell.cell_type == 'code':
             cell.outputs, cell.execution_count = [], None
-        cell.metadata[KEY] = {'role': kind}
     return AssignmentTemplate(notebook=notebook, released=released)
 
 

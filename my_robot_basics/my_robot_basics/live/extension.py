@@ -7,7 +7,7 @@ that cell runs, because it may initialise rclpy itself.
 import re
 from typing import Any
 
-from my_robot_basics.checks import tick
+from my_robot_basics.checks import tick, untouched
 from my_robot_basics.session.errors import LiveError
 
 _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')
@@ -16,6 +16,7 @@ _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')
 def load_ipython_extension(shell: Any) -> None:
     """Wait for that cell; from now on, show a tick below checks that pass."""
     tick.watch()
+    untouched.watch()
 
     def before_cell(info: Any) -> None:
         if _NAMES_LIVE.search(info.raw_cell or ''):

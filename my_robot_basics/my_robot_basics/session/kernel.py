@@ -21,9 +21,18 @@ def call_after_cells(function: Callable[[Any], None]) -> None:
 
     A second call does nothing, nor does one at grading or outside of a notebook.
     """
+    _call('post_run_cell', function)
+
+
+def call_before_cells(function: Callable[[Any], None]) -> None:
+    """The same, before each cell, with what is known about it: its text, and its id."""
+    _call('pre_run_cell', function)
+
+
+def _call(event: str, function: Callable[[Any], None]) -> None:
     notebook = shell()
     if notebook is None or 'MY_ROBOT_BASICS_ROOM' in os.environ:
         return
     if (notebook, function) not in _registered:
-        notebook.events.register('post_run_cell', function)
+        notebook.events.register(event, function)
         _registered.append((notebook, function))

@@ -20,9 +20,8 @@ from my_robot_basics.validate.overdue import judge_overdue
 from my_robot_basics.validate.plans import Plan, plan_for_names, plans
 from my_robot_basics.validate.rooms_interface import OpenRooms, R, Rooms
 from my_robot_basics.validate.second_look import Attempts
-from my_robot_basics.validate.verdict import Verdict, judge, leave_ungraded
-
-Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
+from my_robot_basics.validate.unanswered import Checks, explain_unanswered
+from my_robot_basics.validate.verdict import judge, leave_ungraded
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,9 @@ async def judge_exercise(
     looks = Attempts(open_rooms)
     for _ in range(2):
         try:
-            return await _try_plans(notebook, exercise, looks, budget)
+            judged = await _try_plans(notebook, exercise, looks, budget)
+            answer = notebook.cells[exercise.answer]
+            return replace(judged, checks=explain_unanswered(answer, judged.checks))
         except RoomFailure as error:
             failure = error
             await looks.end(error)

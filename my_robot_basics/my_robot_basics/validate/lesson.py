@@ -9,6 +9,7 @@ from nbformat import NotebookNode
 
 from my_robot_basics.validate.cells import KEY, fingerprint, grade_id, roles
 from my_robot_basics.validate.errors import CourseError
+from my_robot_basics.validate.unanswered import RELEASED
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,8 @@ def read_lesson(path: Path) -> Lesson:
     for cell, given in zip(notebook.cells, roles(notebook), strict=True):
         number = numbers[id(cell)]
         cell.metadata[KEY] = {'role': _role(cell, given, record), 'number': number}
+        if given == 'answer':
+            cell.metadata[KEY][RELEASED] = record.get(grade_id(cell) or '', {}).get('source')
     graded = [c for c in notebook.cells if c.metadata[KEY].role in ('answer', 'grade')]
     if not graded:
         raise CourseError(f'{path} holds no exercise: name the notebook of a lesson')
