@@ -52,6 +52,23 @@ def test_running_a_command_again_replaces_its_process(notebook):
     assert after.process.poll() is None
 
 
+@pytest.mark.parametrize(
+    ('rest', 'why'),
+    [
+        ('-p seed=7', "a parameter is written name:=value, so put := into 'seed=7'"),
+        ('--param seed:7', "a parameter is written name:=value, so put := into 'seed:7'"),
+        ('-p seed:=7 -r __ns=/a', "a rule is written name:=new_name, so put := into '__ns=/a'"),
+    ],
+)
+def test_a_word_without_its_sign_is_named_and_not_quoted_from_rcl(
+    notebook, capsys, monkeypatch, rest, why
+):
+    monkeypatch.setattr(commands, 'STARTED_SEC', 60.0)  # a slow start is not under test
+    notebook(left=f'{START} {rest}')
+    live.run_commands('left')
+    assert ' '.join(capsys.readouterr().out.split()) == f'left: ended by itself: {why}'
+
+
 def test_the_last_output_of_a_command_that_ends_is_printed(notebook, capsys, monkeypatch):
     monkeypatch.setattr(commands, 'STARTED_SEC', 60.0)  # a slow start is not under test
     notebook(left=f'{START} -r __ns:=left')

@@ -27,9 +27,8 @@ def for_a_name(line: CommandLine, node_name: str) -> str:
         return f'a name has no /, the namespace is in the other rule: write -r __node:={name}'
     if (rules['__ns'], given) != (namespace, name):
         return 'compare both names in the rules of the command line'
-    unfit = [word for _, word in line.options(*OPTIONS_OF_PARAMETERS) if ':=' not in word]
-    if unfit:
-        return f'a parameter is written name:=value: {shorten(unfit[0], 40)!r} is none'
+    if unfit := line.without_sign(*OPTIONS_OF_PARAMETERS):
+        return f'a parameter is written name:=value: {shorten(unfit, 40)!r} is none'
     numbers = [rule for rule in rules.items() if rule[1][:1].isdigit()]
     if numbers:
         left, right = numbers[0]

@@ -12,6 +12,8 @@ from my_robot_basics.session.errors import NotRunnable, tell
 
 STARTED_SEC = 6.0
 """How long a cell waits for the first log line of its commands, or their end."""
+MOST_OF_A_WORD = 60
+"""How many characters of a wrong word are quoted."""
 _PACKAGE = 'my_robot_basics'
 _OWN_WORDS = 4
 """How many words of `ros2 run PACKAGE EXECUTABLE` come before the program's arguments."""
@@ -56,7 +58,17 @@ def run_commands(*names: str, executable: str = 'kinematics_publisher') -> None:
         if command.process.poll() is None:
             tell(f'{name}: started')
         else:
-            tell(f'{name}: ended by itself: {command.last_line}', in_one=False)
+            why = _why_refused(lines[name]) or command.last_line
+            tell(f'{name}: ended by itself: {why}', in_one=False)
+
+
+def _why_refused(line: command_line.CommandLine) -> str:
+    """Say which word of the command line rcl refuses, for which it has no plain words; or ''."""
+    if unfit := line.without_sign(*command_line.OPTIONS_OF_PARAMETERS):
+        return f'a parameter is written name:=value, so put := into {unfit[:MOST_OF_A_WORD]!r}'
+    if unfit := line.without_sign(*command_line.OPTIONS_OF_RULES):
+        return f'a rule is written name:=new_name, so put := into {unfit[:MOST_OF_A_WORD]!r}'
+    return ''
 
 
 def stop_commands() -> None:

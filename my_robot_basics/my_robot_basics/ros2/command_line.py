@@ -43,6 +43,14 @@ class CommandLine:
         """Return each of these options with the word after it, in order."""
         return [pair for pair in itertools.pairwise(self.words) if pair[0] in names]
 
+    def without_sign(self, *names: str) -> str:
+        """Return the first word after one of these options that has no `:=`; '' if there is none.
+
+        rcl refuses such a word, and the program ends at once.
+        """
+        words = (word for _, word in self.options(*names))
+        return next((word for word in words if ':=' not in word), '')
+
 
 def parse(text: str, *, package: str, executable: str) -> CommandLine:
     """Parse a command line that starts this executable and does nothing else.
