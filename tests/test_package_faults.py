@@ -197,3 +197,27 @@ def test_code_that_keeps_a_program_from_ending_is_found(tmp_path, is_in, line, e
     (folder / 'greeter/more.py').write_text(f'{line}\n')
     assert is_in(folder) is expected
     assert not is_in(folder / 'nowhere')
+
+
+HEAD = 'Traceback (most recent call last):'
+IN_MAIN = '  File "/ws/arm_player/arm_driver.py", line 6, in main'
+AN_IMPORT = '  File "<frozen importlib._bootstrap>", line 1176, in _find_and_load'
+STARTING = [
+    [],
+    [HEAD, '  File "/ws/lib/arm_player/arm_driver", line 25', AN_IMPORT, 'KeyboardInterrupt'],
+]
+RUNNING = [
+    ['Hi from arm_player.'],
+    [HEAD, IN_MAIN, AN_IMPORT, 'KeyboardInterrupt'],
+    [HEAD, IN_MAIN, 'KeyboardInterrupt'],
+    [HEAD, AN_IMPORT, "ModuleNotFoundError: No module named 'rclpi'"],
+]
+
+
+@pytest.mark.parametrize('lines', [*STARTING, *RUNNING])
+def test_a_program_that_was_stopped_before_its_code_ran_is_not_called_unclean(lines):
+    process = types.SimpleNamespace(code=-signal.SIGINT, lines=lines)
+    said = executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
+    wanted = 'was stopped before it had started: to see how it ends, let it run for a few seconds'
+    assert (said == wanted) == (lines in STARTING)
+    assert ('not cleanly' in said) == (lines in RUNNING)

@@ -1,11 +1,16 @@
 """How a program ended: its exit code, its signal, and the error in its output."""
 
+import re
 import signal
 from collections.abc import Sequence
 
 RACE = 'rcl_shutdown already called'
 """An error of rclpy, not of the student: its SIGINT handler shuts the context down in a thread,
 and `try_shutdown` in main may run at the same time. Seen in 1 of 44 ends of a plain node."""
+_IMPORTS = re.compile('<frozen importlib')
+"""What a traceback has in each line about an import that has not ended."""
+_RUNS = re.compile(', in main$')
+"""What ends the line of a traceback about the program's own function."""
 TRY_SHUTDOWN = 'try_shutdown'
 """The name of the call, as a traceback shows it."""
 
@@ -27,6 +32,18 @@ def error_in(lines: Sequence[str]) -> str:
         return ''
     errors = (line for line in lines[starts[-1] + 1 :] if line[:1].isalpha())
     return next(errors, 'a traceback')
+
+
+def was_starting(code: int | None, lines: Sequence[str]) -> bool:
+    """Whether SIGINT has ended a program before its code ran, or while it imported modules.
+
+    Once its code runs, Python shows in a traceback where KeyboardInterrupt was raised.
+    """
+    if code != -signal.SIGINT or not lines:
+        return code == -signal.SIGINT
+    imports = any(map(_IMPORTS.search, lines))
+    runs = any(map(_RUNS.search, lines))
+    return imports and not runs and error_in(lines).startswith('KeyboardInterrupt')
 
 
 def why_crashed(code: int | None, *, at_end: bool = False) -> str:

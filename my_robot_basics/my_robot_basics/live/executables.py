@@ -8,7 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from my_robot_basics.exchange.endings import error_in, is_clean, signal_name, why_crashed
+from my_robot_basics.exchange.endings import (
+    error_in,
+    is_clean,
+    signal_name,
+    was_starting,
+    why_crashed,
+)
 from my_robot_basics.live import notebook
 from my_robot_basics.live.package_build import executables_of, prefix_of
 from my_robot_basics.live.panel import Panel, PanelEntry
@@ -100,6 +106,10 @@ def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
         return f'had ended by itself ({end})'
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
         return 'ended cleanly after SIGINT'  # the exit code may be 1: see RACE in endings.py
+    if took is signal.SIGINT and was_starting(code, [*each.process.lines]):
+        return (
+            'was stopped before it had started: to see how it ends, let it run for a few seconds'
+        )
     if took is signal.SIGINT:
         if why:
             return f'ended after SIGINT, but not cleanly ({end}): {why}'
