@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from my_robot_basics.checks import periods, pictures, rates, starved
+from my_robot_basics.checks.sleeping_callbacks import why_too_slow
 from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
     seen, cause, hint = _explanation(recording, hz, over)
+    hint = why_too_slow(recording.rate_hz, hz) or hint
     picture = pictures.plot_arrivals(recording, hz=hz)
     doubt = Starved if starved.may_be_starved(recording, hz) else CheckFailed
     expected = f'{_rounded(hz)} Hz on {recording.topic_name}'

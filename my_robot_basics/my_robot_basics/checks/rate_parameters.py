@@ -11,6 +11,7 @@ from my_robot_basics.checks.older_timers import are_near
 from my_robot_basics.checks.parameters import NodeParameters, node_parameters
 from my_robot_basics.checks.rate_failure import TOO_FAST_TIMES
 from my_robot_basics.checks.recording import Recording
+from my_robot_basics.checks.sleeping_callbacks import why_too_slow
 from my_robot_basics.checks.topics import topic
 from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, fail, shorten
 from my_robot_basics.feedback.hidden import student_text
@@ -143,7 +144,7 @@ class RateParameter:
     ) -> NoReturn:
         """Raise CheckFailed with the reason why a node misses a new rate, else raise `failed`."""
         seen_hz = recording.rate_hz
-        if are_near(seen_hz, now_hz):
+        if are_near(seen_hz, now_hz) or why_too_slow(seen_hz, now_hz):
             raise failed
         if are_near(seen_hz, before_hz + now_hz):
             seen = f'{seen_hz:.3g} Hz, which is both together'

@@ -41,6 +41,13 @@ def blocking_line(node_name: str) -> str:
     return shorten(body) if isinstance(body, str) else ''
 
 
+def sleeping_line() -> tuple[int, str]:
+    """Return the line at which a callback sleeps most of the time, number and text; or 0, ''."""
+    body = reply_value(wire.request(op='sleeping', name=wire.THREADS))
+    is_told = isinstance(body, tuple) and [type(part) for part in body] == [int, str]
+    return (body[0], shorten(body[1], 120)) if is_told else (0, '')
+
+
 def not_awaited() -> tuple[str, int, str]:
     """Return the coroutine that the answer has called without `await`, and the line of the call.
 

@@ -98,6 +98,12 @@ def _blocking_line(node_name: str) -> str:
     return troubles.blocking_line(node_name) if troubles else ''
 
 
+def _sleeping_line(_: str) -> tuple[int, str]:
+    """Return the line at which a callback sleeps most of the time; this takes half a second."""
+    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    return troubles.sleeping_line() if troubles else (0, '')
+
+
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
     """Set `use_sim_time` of a node of this process; return its former value.
 
@@ -137,6 +143,7 @@ _OTHERS: dict[str, Callable[..., object]] = {
     'field': _unpublished_field,
     'unfinished': _blocking_line,
     'not_awaited': _not_awaited,
+    'sleeping': _sleeping_line,
     'ended': _how_answer_ended,
     'clock': _set_use_sim_time,
     'package': _ask_package,

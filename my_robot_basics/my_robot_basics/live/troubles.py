@@ -106,6 +106,13 @@ def blocking_line(node_name: str) -> str:
     return next((each.line for each in lasting if node_name in each.holds and each.line), '')
 
 
+def sleeping_line() -> tuple[int, str]:
+    """Return the line at which callbacks sleep most of the time: its number and text; or 0, ''."""
+    from my_robot_basics.live import sleeping  # few answers need it
+
+    return sleeping.sleeping_line()
+
+
 def _frames(error: BaseException) -> list[traceback.FrameSummary]:
     return [
         frame
