@@ -89,8 +89,20 @@ def test_feedback_moves_the_arm_and_the_bar(view):
         told = f'feedback {count}: {remaining:.2f} rad remain'
         assert words(view) == f'/move_arm: ACCEPTED → EXECUTING, {told}'
     assert view._pose == pytest.approx((math.degrees(0.5), math.degrees(-1.0)))
-    assert view._picture._bar.get_width() == pytest.approx(8.0 * 0.2 / 0.8)
+    assert view._picture._bar.get_width() == pytest.approx(8.0 * 0.6 / 0.8)
     assert view._picture._remaining.get_text() == told
+
+
+@pytest.mark.parametrize(
+    ('remaining', 'done'), [([], 0.0), ([0.8], 0.0), ([0.8, 0.0], 1.0), ([0.0], 1.0)]
+)
+def test_the_bar_fills_from_the_left_until_the_arm_is_there(view, remaining, done):
+    view.take_status(statuses(first='EXECUTING'))
+    for each in remaining:
+        view.take_feedback(feedback(FIRST, each, 0.5, -1.0))
+    words(view)
+    assert view._picture._bar.get_x() == 1.0
+    assert view._picture._bar.get_width() == pytest.approx(8.0 * done)
 
 
 @pytest.mark.parametrize('position', [(), (0.1,), (0.1, math.nan), (0.1, 0.2, 0.3)])

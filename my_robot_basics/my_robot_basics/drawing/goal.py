@@ -24,7 +24,7 @@ WIDTH, HEIGHT = 10.0, 4.3
 BOX = (1.1, 0.35)
 """Half the width and half the height of the largest frame around a state."""
 BAR = (1.0, 0.2, 8.0, 0.4)
-"""Left, bottom, width and height of the bar that shows the remaining part of the motion."""
+"""Left, bottom, width and height of the bar that shows which part of the motion is done."""
 STATES_INCHES = 2.0
 REACHED, NOW, NOT_YET = '#56b4e9', '#e69f00', 'white'
 """Colours of a former state, of the current state, and of one that the goal was not in yet."""
@@ -65,8 +65,8 @@ class GoalPicture(ArmPicture):
             box.set_bbox(self._frame_of(face, line=2.5 if is_now else 1.0))
             box.set_fontweight('bold' if is_now else 'normal')
 
-    def remaining(self, part: float, text: str) -> None:
-        """Show the remaining part of the motion, from 0 to 1, and the same in words."""
+    def progress(self, part: float, text: str) -> None:
+        """Show which part of the motion is done, from 0 to 1, and what remains in words."""
         self._bar.set_width(BAR[2] * min(1.0, max(0.0, part)))
         self._remaining.set_text(text)
 

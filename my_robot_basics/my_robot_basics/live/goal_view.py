@@ -85,7 +85,7 @@ class GoalView(ArmView):
         self._display.update_soon(self._bundle)
 
     def take_feedback(self, message: Any) -> None:
-        """Show the arm's current pose and the remaining part of the motion."""
+        """Show the arm's current pose and how much of the motion is done."""
         feedback = message.feedback
         if len(feedback.position) != 2 or not all(map(math.isfinite, feedback.position)):
             return
@@ -109,11 +109,17 @@ class GoalView(ArmView):
     def _about(self, topic_name: str) -> str:
         return gettext_noop(f'goal of {topic_name}')
 
+    def _done(self) -> float:
+        """Which part of the motion is done; a goal to where the arm is has no way to go."""
+        if not self._feedback_count:
+            return 0.0
+        return 1.0 - self._left / self._way if self._way else 1.0
+
     def _bundle(self) -> dict:
         count = self._feedback_count
         words = gettext_noop(f'feedback {count}: {self._left:.2f} rad remain') if count else ''
         self._picture.states(self._states)
-        self._picture.remaining(self._left / self._way if self._way else 0.0, words)
+        self._picture.progress(self._done(), words)
         bundle = super()._bundle()
         said = ', '.join(filter(None, [' → '.join(self._states) or self._trouble, words]))
         return bundle | {'text/plain': f'{self._text}: {said}'}
