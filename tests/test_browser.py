@@ -136,7 +136,10 @@ def test_the_workspace_opens_in_the_file_browser(lab, page, monkeypatch):
 
 @pytest.mark.parametrize('name', LESSONS)
 def test_run_all_runs_an_unanswered_lesson_to_its_end(opened, name):
-    run_through(opened(name))
+    lesson = opened(name)
+    run_through(lesson)
+    [check, *_] = [c.id for c in lesson.cells if c.metadata.get('nbgrader', {}).get('grade')]
+    expect(lesson.shown(check)).to_contain_text('saw none yet: write it into the answer cell')
 
 
 @pytest.mark.slow
