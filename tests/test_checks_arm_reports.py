@@ -1,5 +1,6 @@
 """What a check reads from the feedback on a move, with made-up messages, each with a near miss."""
 
+import contextlib
 import math
 from types import SimpleNamespace
 
@@ -92,6 +93,21 @@ def test_feedback_that_stops_before_the_end_has_a_pause():
     reported.sent.over_ns = lambda: round(2e9)
     with pytest.raises(CheckFailed, match=r'a pause of 1\.0 s'):
         reported.expect_enough()
+
+
+@pytest.mark.parametrize(('step_sec', 'is_right'), [(0.0, False), (0.001, False), (0.004, True)])
+def test_feedback_that_comes_at_once_and_too_early_comes_from_a_loop_without_waits(
+    step_sec, is_right
+):
+    _, parts = evenly(2.0)
+    reported = report(parts, [0.01 + i * step_sec for i in range(len(parts))], DRIVEN)
+    with contextlib.nullcontext() if is_right else pytest.raises(CheckFailed, match='at once'):
+        reported.expect_enough()
+
+
+def test_frequent_feedback_on_a_move_that_takes_its_time_is_enough():
+    times, parts = evenly(2.0, step_sec=0.001)
+    report(parts, times, DRIVEN).expect_enough()
 
 
 @pytest.mark.parametrize(('silent_sec', 'is_right'), [(0.3, True), (0.4, False)])

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from my_robot_basics.checks import periods
 from my_robot_basics.checks.action_ends import SentGoal
 from my_robot_basics.checks.actions import Action
 from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, parts_of_way, why_off_line
 from my_robot_basics.checks.arm_looks import look
 from my_robot_basics.checks.arm_remaining import expect_remaining
+from my_robot_basics.checks.arm_report_times import longest_same_sec, rate_hz
 from my_robot_basics.checks.arm_results import IN_DEGREES
 from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
 from my_robot_basics.checks.watched_arm import Pose, WatchedArm, far_rad
@@ -23,7 +23,7 @@ LARGEST_GAP_SEC = 0.35
 FLOOD_HZ = 500.0
 """Feedback at a higher rate comes from a loop that does not wait."""
 NO_WAIT = (
-    'no step of the loop waits, and most of the feedback is lost: write `await sleep(self, …)`'
+    'no step of the loop waits, and much of the feedback may be lost: write `await sleep(self, …)`'
 )
 EACH_STEP = 'publish feedback in each step of the move'
 NONE = 'call goal_handle.publish_feedback(…) in each step of the move'
@@ -87,7 +87,15 @@ class MoveReport:
                 cause='there is no feedback',
             )
         seconds = self.arm.seconds(self.sent)
-        if count < FEWEST or self._rate_hz() < LEAST_HZ:
+        rate = rate_hz(self.times, is_driven=self.arm.time.is_driven) if count > 1 else 0.0
+        if rate > FLOOD_HZ and self.arm.was_early(self.sent, self.end):
+            fail(
+                expected='feedback while the arm moves',
+                seen=f'{count} messages at once',
+                hint=NO_WAIT,
+                cause='the feedback comes at once',
+            )
+        if count < FEWEST or rate < LEAST_HZ:
             one, many = f'1 message in {seconds:.1f} s', f'{count} messages in {seconds:.1f} s'
             fail(
                 expected=f'feedback at {WANTED_HZ:g} Hz or more',
@@ -148,7 +156,7 @@ class MoveReport:
         late_part = self.arm.time.step_ns / 1e9 / np.ptp(times)  # on a busy machine, by a step
         if np.abs(parts - steady).max() > PROGRESS_PART + late_part:
             self._fail_steady('move at one speed from start to goal, and publish each position')
-        if self._longest_same_sec() > LARGEST_GAP_SEC:
+        if longest_same_sec(self.times, self._positions()) > LARGEST_GAP_SEC:
             self._fail_steady(
                 'the same position is published for a while: compute it anew for each feedback'
             )
@@ -166,18 +174,6 @@ class MoveReport:
         """Expect the right `remaining` in each message. Raises CheckFailed."""
         told = np.array([message.remaining for message in self.messages])
         expect_remaining(told, self._positions(), start=self.arm.start, end=self.end)
-
-    def _rate_hz(self) -> float:
-        """The rate from the first message to the last; on the wall clock, without delays."""
-        if not self.arm.time.is_driven:
-            return 1.0 / max(periods.intended_period(self.times), 1e-9)
-        return (len(self.times) - 1) / max(float(np.ptp(self.times)), 1e-9)
-
-    def _longest_same_sec(self) -> float:
-        """For how long feedback told one position before it told another, in seconds."""
-        positions = self._positions()
-        is_new = np.array([True, *np.any(np.diff(positions, axis=0) != 0.0, axis=1)])
-        return float(np.diff(self.times[is_new]).max(initial=0.0))
 
     def _positions(self) -> np.ndarray:
         return np.array([list(message.position) for message in self.messages])

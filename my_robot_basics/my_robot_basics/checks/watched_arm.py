@@ -142,14 +142,17 @@ class WatchedArm:
 
         A busy machine makes no move faster, so it cannot be the cause if the goal ended too early.
         """
-        if sent is not None and sent.is_over():
-            wanted_sec = far_rad(self.start, position) / sent.goal.speed
-            if self.seconds(sent) < EARLY_PART * wanted_sec:
-                return CheckFailed
+        if sent is not None and self.was_early(sent, position):
+            return CheckFailed
         if isinstance(self.time, WallTime):
             is_doubtful = self.time.stalled_sec() > STALLED_PART * self.time.wall_sec()
             return Starved if is_doubtful else CheckFailed
         return CheckFailed
+
+    def was_early(self, sent: SentGoal, position: Pose) -> bool:
+        """Whether a move to that position has ended far too early for its speed."""
+        wanted_sec = far_rad(self.start, position) / sent.goal.speed
+        return sent.is_over() and self.seconds(sent) < EARLY_PART * wanted_sec
 
     def settle(self) -> None:
         """End the goals that are still active, and let the execute callbacks return."""
