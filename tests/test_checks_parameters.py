@@ -8,6 +8,7 @@ from my_robot_basics.checks import (
     node_parameters,
     older_timers,
     parameters,
+    rate_failure,
     rate_parameter,
     sampling,
     topic,
@@ -16,6 +17,7 @@ from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.parameter_refusals import expect_all_refused, fail_refused
 from my_robot_basics.checks.parameters import NodeParameters
 from my_robot_basics.checks.rate_parameters import RateParameter
+from my_robot_basics.feedback.errors import fail
 from nodes.running import imported
 from rcl_interfaces.msg import ParameterValue, SetParametersResult
 from rcl_interfaces.srv import GetParameters, SetParameters
@@ -197,18 +199,28 @@ def test_a_node_that_publishes_as_fast_as_it_can_passes_the_check_of_refusals(mo
 
 
 @pytest.mark.parametrize(
-    ('seen_hz', 'why'),
-    [(92.5, 'store each new timer as self.timer'), (62.5, ''), (50.0, ''), (25.0, '')],
+    ('seen_hz', 'cause', 'is_explained'),
+    [
+        (92.5, 'another rate', True),
+        (62.5, 'another rate', False),
+        (50.0, 'another rate', False),
+        (25.0, 'another rate', False),
+        (80.0, rate_failure.AT_ONCE, True),
+        (50.0, rate_failure.AT_ONCE, False),
+    ],
 )
-def test_a_rate_of_all_changes_together_is_explained_with_their_timers(seen_hz, why):
-    said = ''
-    try:
-        older_timers.expect_none('rate_hz', seen_hz, [12.5, 30.0, 50.0], doubt=CheckFailed)
-    except CheckFailed as failed:
-        said = str(failed)
-    assert why in said
-    assert bool(why) == bool(said)
-    older_timers.expect_none('rate_hz', 62.5, [12.5, 50.0], doubt=CheckFailed)  # has its own words
+def test_a_rate_of_all_changes_together_is_explained_with_their_timers(
+    seen_hz, cause, is_explained
+):
+    with pytest.raises(CheckFailed) as failed:
+        fail(expected='50 Hz', seen='another', hint='', cause=cause)
+    said = []
+    for taken_hz in [12.5, 50.0], [12.5, 30.0, 50.0]:  # of two timers, another sentence tells
+        try:
+            older_timers.expect_none('rate_hz', seen_hz, taken_hz, failed=failed.value)
+        except CheckFailed as explained:
+            said.append((len(taken_hz), 'store each new timer as self.timer' in str(explained)))
+    assert said == [(3, True)] * is_explained
 
 
 @pytest.mark.slow

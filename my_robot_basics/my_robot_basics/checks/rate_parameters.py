@@ -151,7 +151,7 @@ class RateParameter:
             cause = 'the old timer still runs beside the new one'
             hint = 'call self.destroy_timer(…) for the old timer before you create the next one'
         elif not are_near(seen_hz, before_hz):
-            older_timers.expect_none(self.name, seen_hz, self._taken_hz, doubt=type(failed))
+            older_timers.expect_none(self.name, seen_hz, self._taken_hz, failed=failed)
             raise failed
         elif self._lags(before_hz, now_hz):
             seen = f'{seen_hz:.3g} Hz, the value before'

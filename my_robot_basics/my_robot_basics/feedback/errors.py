@@ -95,6 +95,12 @@ def fail(
     raise failure
 
 
+def cause_of(failure: CheckFailed) -> str:
+    """Return the `cause` that `fail` was given for it, or ''."""
+    told: dict[str, Any] = getattr(failure.repeat, 'keywords', {})
+    return str(told.get('cause', ''))
+
+
 def fail_with_hint(failure: CheckFailed, hint: str) -> NoReturn:
     """Raise the same failure with another hint; unchanged if `fail` did not raise it."""
     told: dict[str, Any] = getattr(failure.repeat, 'keywords', {})
