@@ -247,7 +247,8 @@ def test_validate_says_the_same_as_the_grader_of_each_visible_cell(graded, valid
             ours = visible_parts_alone(notebook, name)
         if name in BESIDE_THE_ARM:
             assert ours.pop(RELAY) != theirs.pop(RELAY)
-        if name in WAITS_ALREADY:
+        # only JupyterLab tells a kernel which notebook it runs, and so what its cells held
+        if name in WAITS_ALREADY or name.endswith('-untouched'):
             assert failing(ours) == failing(theirs)
         else:
             assert numberless(ours) == numberless(theirs)
