@@ -46,7 +46,8 @@ def fill_in(cell: str) -> str:
         tree = ast.parse(cell)
     except SyntaxError as error:
         # +1: in the student's cell, the magic command is the first line
-        where = f'line {(error.lineno or 0) + 1}: {error.msg}'
+        lineno = (error.lineno or 0) + 1
+        where = f'line {lineno}: {error.msg}'
         raise NotAProgram(f'this cell is not valid Python ({where}): fix that line') from None
     lines = cell.splitlines(keepends=True)
     for node in reversed(tree.body):
