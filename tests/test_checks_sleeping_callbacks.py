@@ -1,9 +1,11 @@
 """A callback that sleeps is named as the reason why a node is too slow, and only then."""
 
 import time
+from dataclasses import replace
 
 import pytest
 from my_robot_basics.checks import CheckFailed, rate_parameter, topic
+from my_robot_basics.exchange import node_troubles
 from rclpy.node import Node
 from std_msgs.msg import Int32
 
@@ -48,7 +50,17 @@ def test_it_is_named_in_place_of_what_the_timer_lacks(run):
         rate.expect_follows(40.0)
 
 
+def test_nothing_is_asked_about_a_rate_on_the_robots_clock(run, monkeypatch):
+    monkeypatch.setattr(node_troubles, 'sleeping_line', pytest.fail)
+    run(Sleeps, 1.0, 0.01)
+    recording = topic('/counts').record(seconds=4.0)
+    assert recording.clock == 'simulated'
+    with pytest.raises(CheckFailed, match='period = 1 / rate'):
+        recording.assert_rate(hz=5.0)
+
+
 def test_a_short_sleep_is_not_named_for_another_mistake(run):
     run(Sleeps, 1.0, 0.01)
+    recording = replace(topic('/counts').record(seconds=4.0), clock='wall')
     with pytest.raises(CheckFailed, match='the timer period is in seconds, and period = 1 / rate'):
-        topic('/counts').record(seconds=4.0).assert_rate(hz=5.0)
+        recording.assert_rate(hz=5.0)

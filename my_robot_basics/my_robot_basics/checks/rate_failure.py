@@ -26,7 +26,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     n = len(recording.messages)
     over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
     seen, cause, hint = _explanation(recording, hz, over)
-    hint = why_too_slow(recording.rate_hz, hz) or hint
+    hint = why_too_slow(recording, hz) or hint
     picture = pictures.plot_arrivals(recording, hz=hz)
     doubt = Starved if starved.may_be_starved(recording, hz) else CheckFailed
     expected = f'{_rounded(hz)} Hz on {recording.topic_name}'

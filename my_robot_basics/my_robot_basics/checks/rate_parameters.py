@@ -144,7 +144,7 @@ class RateParameter:
     ) -> NoReturn:
         """Raise CheckFailed with the reason why a node misses a new rate, else raise `failed`."""
         seen_hz = recording.rate_hz
-        if are_near(seen_hz, now_hz) or why_too_slow(seen_hz, now_hz):
+        if are_near(seen_hz, now_hz) or why_too_slow(recording, now_hz):
             raise failed
         if are_near(seen_hz, before_hz + now_hz):
             seen = f'{seen_hz:.3g} Hz, which is both together'
