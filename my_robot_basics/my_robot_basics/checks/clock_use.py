@@ -39,11 +39,11 @@ def why_not_driven(node: Node) -> str:
 
 
 def expect_wall_clock(former: Mapping[str, bool], needed: Collection[str]) -> None:
-    """Expect nodes not to have use_sim_time of their own. Raises CheckFailed.
+    """Expect nodes that are now switched not to have use_sim_time of their own, and note them.
 
     Nobody but a check publishes `/clock`, so their time would stand still. `former` has the
     use_sim_time of each node before it is switched. A node that was switched before may have its
-    own from that time: on a busy machine, it may not get the former one back.
+    own from that time: on a busy machine, it may not get the former one back. Raises CheckFailed.
     """
     waiting = sorted(name for name in needed if former[name] and name not in _switched)
     _switched.update(former)

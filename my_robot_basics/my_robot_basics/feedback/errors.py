@@ -97,16 +97,20 @@ def fail(
 
 def cause_of(failure: CheckFailed) -> str:
     """Return the `cause` that `fail` was given for it, or ''."""
-    told: dict[str, Any] = getattr(failure.repeat, 'keywords', {})
-    return str(told.get('cause', ''))
+    return str(_told(failure).get('cause', ''))
 
 
 def fail_with_hint(failure: CheckFailed, hint: str) -> NoReturn:
     """Raise the same failure with another hint; unchanged if `fail` did not raise it."""
-    told: dict[str, Any] = getattr(failure.repeat, 'keywords', {})
+    told = _told(failure)
     if not told or isinstance(failure, PartlyRight):
         raise failure
     fail(**told | {'hint': hint, 'doubt': type(failure)})
+
+
+def _told(failure: CheckFailed) -> dict[str, Any]:
+    """Return what `fail` was given for that failure; {} if it did not raise it."""
+    return getattr(failure.repeat, 'keywords', {})
 
 
 def shorten(text: object, most: int = MOST_CHARACTERS) -> str:
