@@ -15,8 +15,11 @@ from typing import Any
 
 UNUSED = ('nbgrader', 'nbgrader.utils', 'requests')
 """Imported by nbgrader's database, but not used by it: `utils` imports setuptools."""
-FORMATS = ('isoduration', 'rfc3986_validator', 'rfc3987', 'rfc3987_syntax')
-"""jsonschema imports these to check durations and addresses, but only if a schema names such
+FORMATS = (
+    *('fqdn', 'idna', 'isoduration', 'jsonpointer', 'rfc3339_validator', 'rfc3986_validator'),
+    *('rfc3987', 'rfc3987_syntax', 'uri_template', 'webcolors'),
+)
+"""jsonschema imports these to check times, addresses and colors, but only if a schema names such
 formats: ours do not, nor do nbformat's."""
 
 

@@ -7,8 +7,15 @@ from dataclasses import dataclass, field
 import nbformat
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import LANGUAGE, language_of
-from my_robot_basics.validate.cells import KEY, fingerprint, grade_id, role, roles, title_of
-from my_robot_basics.validate.unanswered import RELEASED
+from my_robot_basics.validate.cells import (
+    KEY,
+    RELEASED,
+    fingerprint,
+    grade_id,
+    role,
+    roles,
+    title_of,
+)
 from nbformat import NotebookNode
 
 NO_ANSWERS = (

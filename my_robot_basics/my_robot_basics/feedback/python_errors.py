@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from functools import cache
 
 from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
@@ -14,11 +15,7 @@ from my_robot_basics.feedback.moved_names import MOVED
 from my_robot_basics.feedback.syntax_errors import OF_SYNTAX
 from my_robot_basics.feedback.value_errors import OF_VALUES
 
-_BY_WORDS = tuple(
-    (re.compile(words), clause)
-    for cases in (OF_SYNTAX, OF_ACTIONS, OF_MESSAGES, BY_WORDS, MOVED, OF_CALLS, OF_VALUES)
-    for words, clause in cases
-)
+_ALL_CASES = OF_SYNTAX, OF_ACTIONS, OF_MESSAGES, BY_WORDS, MOVED, OF_CALLS, OF_VALUES
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
     r"than [^:]*:\s+'(?P<name>.*?)'(?P<caret>\s+\^)"
@@ -44,8 +41,14 @@ def hint_for_exception(said: str) -> str:
         return _about_character(found[1])
     if found := _NAME.search(said):
         return _about_name(found['name'], is_node=found['kind'] == 'node')
-    by_words = (clause for words, clause in _BY_WORDS if words.search(said))
+    by_words = (clause for words, clause in _compile_cases() if words.search(said))
     return next(by_words, '') or hint_for_missing(said)
+
+
+@cache
+def _compile_cases() -> tuple[tuple[re.Pattern[str], str], ...]:
+    """Return all cases, compiled: not at import, because it takes longer than all the rest."""
+    return tuple((re.compile(words), clause) for cases in _ALL_CASES for words, clause in cases)
 
 
 def _about_character(character: str | None) -> str:

@@ -9,6 +9,8 @@ KEY = 'my_robot_basics'
 RECORD = 'cells'
 """The key, under KEY in a released notebook's metadata, of each cell's role and source hash when
 it was released, by its nbgrader id, or else by its own id."""
+RELEASED = 'released'
+"""The key, under KEY in an answer cell's metadata, of its source hash when it was released."""
 
 
 def grade_id(cell: NotebookNode) -> str | None:

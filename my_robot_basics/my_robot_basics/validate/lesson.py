@@ -7,9 +7,8 @@ from typing import Any
 import nbformat
 from nbformat import NotebookNode
 
-from my_robot_basics.validate.cells import KEY, fingerprint, grade_id, roles
+from my_robot_basics.validate.cells import KEY, RELEASED, fingerprint, grade_id, roles
 from my_robot_basics.validate.errors import CourseError
-from my_robot_basics.validate.unanswered import RELEASED
 
 
 @dataclass(frozen=True)

@@ -5,16 +5,12 @@ from dataclasses import replace
 from nbformat import NotebookNode
 
 from my_robot_basics.feedback.unanswered import PLACEHOLDER, say_unanswered
-from my_robot_basics.validate.cells import KEY, fingerprint, graded_id
+from my_robot_basics.validate.cells import KEY, RELEASED, fingerprint, graded_id
 from my_robot_basics.validate.trouble import TROUBLE
 from my_robot_basics.validate.verdict import Verdict
 
 Checks = dict[int, tuple[Verdict, list[NotebookNode]]]
 """Verdict and outputs of each grade cell, by its position in the notebook."""
-
-RELEASED = 'released'
-"""The key, under KEY in an answer cell's metadata, of the hash of its source when it was
-released."""
 
 
 def is_unanswered(cell: NotebookNode) -> bool:
