@@ -31,14 +31,13 @@ class Server:
         self.takes = list(takes)
         self.wall_sec, self.published = 0.0, []
         publisher = SimpleNamespace(wait_for_all_acked=lambda duration: True)
-        self.publishers = {self.asked_on: publisher}
+        self.client = SimpleNamespace(
+            answering=lambda: {'/client'}, publishers={self.asked_on: publisher}
+        )
         self.watcher = self
         self.node = SimpleNamespace(
             create_client=lambda *_: Client(self), destroy_client=lambda client: None
         )
-
-    def answering_nodes(self):
-        return {'/client'}
 
     def publish(self, message):
         self.published.append(message)

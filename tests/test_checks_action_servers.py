@@ -6,7 +6,7 @@ import time
 
 import pytest
 from goal_clients import ENDS, WORDS, MoveArmClient, check_cancels, check_outcomes
-from my_robot_basics.checks import CheckFailed, action_server, replies, served_action
+from my_robot_basics.checks import CheckFailed, action_server, client_nodes, replies, served_action
 from nodes.running import STOPS, imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -134,7 +134,7 @@ def test_an_earlier_obstacle_is_handled_before_the_next_goal_is_published(run, m
 
     note(served_action.ServedAction, 'say_obstacle')
     note(served_action.ServedAction, 'publish')
-    note(served_action, 'answers_parameters')
+    note(client_nodes, 'answers_parameters')
     run(MoveArmClient)
     with action_server('/move_arm', MoveArm, **ENDS) as server:
         replies.expect_no_cancel(server, (-0.3, 0.9))

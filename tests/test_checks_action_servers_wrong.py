@@ -1,6 +1,7 @@
 """For a node that sends goals and has one mistake, the check names the cause."""
 
 import threading
+import time
 
 import pytest
 import rclpy
@@ -111,6 +112,18 @@ class Sleeps(MoveArmClient):
             pass
 
 
+class SleepsBeforeItSends(MoveArmClient):
+    def send(self, pose):
+        time.sleep(2.0)
+        super().send(pose)
+
+
+class SleepsBeforeItTells(MoveArmClient):
+    def ended(self, future):
+        time.sleep(2.0)
+        super().ended(future)
+
+
 class OtherAction(MoveArmClient):
     def __init__(self):
         super().__init__()
@@ -172,6 +185,7 @@ class WaitsForTheLost(MoveArmClient):
 
 
 IN_CALLBACK = 'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_asy'
+ASLEEP = r'it sleeps inside a callback \(line \d+: time.sleep\(2.0\)\), and no other callback runs'
 
 WRONG_OUTCOMES = [
     (CancelsNone, "'NoneType' object has no attribute 'cancel_goal_async'.* in obstacle"),
@@ -200,6 +214,8 @@ WRONG_OUTCOMES = [
     (Raises, r"expected 'succeeded' on .*its callback raised AttributeError.*; fix that first"),
     (SendsAndWaits, IN_CALLBACK),
     (Sleeps, IN_CALLBACK),
+    (SleepsBeforeItSends, ASLEEP),
+    (SleepsBeforeItTells, ASLEEP),
     (OtherAction, '/move_arm_client uses /move_it, so compare the spelling'),
     (NeverSends, r'expected a goal .*saw none.*: call send_goal_async\(goal\) for each message'),
     (SendsTwice, r'one goal for each message on /goal_pose, saw 2 .*: call send_goal_async\('),
@@ -256,6 +272,13 @@ class RemembersTheObstacle(MoveArmClient):
         super().obstacle(message)
 
 
+class SleepsBeforeItCancels(MoveArmClient):
+    def obstacle(self, message):
+        if message.data and self.goal_handle is not None:
+            time.sleep(2.0)
+        super().obstacle(message)
+
+
 class NeverCancels(MoveArmClient):
     def obstacle(self, message):
         pass
@@ -304,6 +327,7 @@ WRONG_CANCELS = [
         RemembersTheObstacle,
         'after True .*: an obstacle cancels the goal that moves the arm then, and no',
     ),
+    (SleepsBeforeItCancels, ASLEEP),
     (
         NeverCancels,
         r'expected a request to cancel .*saw none.*: call cancel_goal_async\(\) of the',

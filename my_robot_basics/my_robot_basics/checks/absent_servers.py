@@ -35,13 +35,13 @@ def publish_in_vain(server: ServedAction, message: Any) -> None:
     node = server.watcher.node
     clients = {
         name: node.create_client(GetParameters, f'{name}/get_parameters')
-        for name in sorted(server.answering_nodes())
+        for name in sorted(server.client.answering())
     }
     server.watcher.spin_until_free(
         lambda: all(client.service_is_ready() for client in clients.values()), free_sec=AWAY_SEC
     )
     server.publish(message)
-    server.publishers[server.asked_on].wait_for_all_acked(Duration(seconds=ARRIVED_SEC))
+    server.client.publishers[server.asked_on].wait_for_all_acked(Duration(seconds=ARRIVED_SEC))
     for _ in range(TIMES):
         for name, client in clients.items():
             _expect_answer(server, name, client)

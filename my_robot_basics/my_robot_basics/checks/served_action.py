@@ -3,15 +3,12 @@
 from collections.abc import Callable
 from typing import Any
 
-from rclpy.publisher import Publisher
 from std_msgs.msg import Bool
 
 from my_robot_basics.checks import goal_senders
-from my_robot_basics.checks.callbacks import CallbackErrors
+from my_robot_basics.checks.client_nodes import ClientNodes
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.scripted_action import ReceivedGoal, ScriptedActionServer
-from my_robot_basics.checks.services import answers_parameters
-from my_robot_basics.checks.topics import Topic
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.watcher import Watcher
@@ -41,20 +38,20 @@ class ServedAction(ScriptedActionServer):
         super().__init__(watcher.node, name=name, type_=type_)
         self.asked_on, self.cancelled_on = asked_on, cancelled_on
         self.watcher, self._outcomes = watcher, outcomes
-        self._raised = CallbackErrors(set(outcomes.publishers()))
-        self.publishers: dict[str, Publisher] = {}
+        self.client = ClientNodes(watcher, outcomes)
+        self.may_sleep = True
+        """Whether a callback may sleep while the check waits for a goal or an outcome."""
         self._known_starts = self._before = 0
         self.asked = goal_senders.AskedGoals(asked_on, cancelled_on)
         self._for_last: Callable[[], list[ReceivedGoal]] = list  # the goals for the last message
         self._was_away = False  # whether a message without a goal so far found no server
-        self._mute: set[str] = set()  # nodes without an answer about parameters: not asked again
         self._cancelled_sec = 0.0  # the longest time from a goal to an obstacle's cancel request
 
     def publish(self, message: Any) -> None:
         """Publish a message that should lead to a goal, without waiting for the goal."""
         self._was_away = self._was_away or self._server is None
         self.asked.messages.append(message)
-        self._publish(self.asked_on, message)
+        self.client.publish(self.asked_on, message)
 
     def ask(
         self, message: Any, *, is_it: Callable[[Any], bool], hint: Callable[[Any], str]
@@ -75,11 +72,11 @@ class ServedAction(ScriptedActionServer):
         self.publish(message)
         self._for_last = found
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self.watcher.spin_until_free(lambda: bool(found()), free_sec=AGAIN_SEC):
+            if self._spin_until(lambda: bool(found()), AGAIN_SEC, may_sleep=self.may_sleep):
                 self._known_starts, self._was_away = self.starts, False
                 self.let_client_know()
                 return found()[0]
-            if self._known_starts < self.starts and len(self.goals) == before:
+            if self._known_starts < self.starts and self._is_lost(before):
                 self.publish(message)
                 self._for_last = list  # a client that is slow may send one goal for each
         others, name = self.goals[before:], self.name
@@ -93,17 +90,19 @@ class ServedAction(ScriptedActionServer):
     def say_obstacle(self, is_there: bool) -> None:
         """Publish on `cancelled_on` whether there is an obstacle."""
         self._before, self.asked.is_obstacle = len(self._outcomes.received), is_there
-        self._publish(self.cancelled_on, Bool(data=is_there))
+        self.client.publish(self.cancelled_on, Bool(data=is_there))
 
     def expect_cancel_of(self, goal: ReceivedGoal) -> None:
         """The client cancels that goal for True on `cancelled_on`. Raises CheckFailed."""
+        self.client.answering()  # once more: it may have answered before it knew of its goal
         self.say_obstacle(is_there=True)
+        late = bool(self.client.mute)  # for a reason that other checks tell
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self.watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=AGAIN_SEC):
+            if self._spin_until(lambda: bool(goal.cancels), AGAIN_SEC, may_sleep=late):
                 self._cancelled_sec = max(self._cancelled_sec, goal.cancelled_sec())
                 return
             # the message may have arrived before the client knew that its goal was accepted
-            self._publish(self.cancelled_on, Bool(data=True))
+            self.client.publish(self.cancelled_on, Bool(data=True))
         goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
         fail(
             expected=f'a request to cancel the goal for True on {self.cancelled_on}',
@@ -123,15 +122,14 @@ class ServedAction(ScriptedActionServer):
         def new() -> list[str]:
             return [message.data for message in self._outcomes.messages()[self._before :]]
 
-        if self.watcher.spin_until_free(lambda: word in new(), free_sec=REPLY_SEC):
-            self._raised.expect_none()
+        if self._spin_until(lambda: word in new(), REPLY_SEC, may_sleep=self.may_sleep):
+            self.client.raised.expect_none()
             self.watcher.spin_for(MORE_SEC)
             goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
-            words = new()
             expect(
-                len(words) == 1 or len(self._outcomes.received) <= self.count_over(),
+                len(new()) == 1 or len(self._outcomes.received) <= self.count_over(),
                 expected=f"one outcome of a goal, '{word}', on {self._outcomes.topic_name}",
-                seen=student_text(shorten(words)),
+                seen=student_text(shorten(new())),
                 hint='publish one word for each goal: that for the status of its result',
                 cause='several outcomes of one goal are published',
             )
@@ -161,33 +159,34 @@ class ServedAction(ScriptedActionServer):
             hint='publish the outcome when the result is there: its status tells how it ended',
             cause='an outcome is published too soon',
         )
-        self._raised.expect_none()
+        self.client.raised.expect_none()
 
     def close(self) -> None:
         """Abort goals that have not ended, and destroy the server."""
+        self.client.answering()  # what a late client still does belongs to this check
         for goal in self.goals:
             if not goal.end.done():
                 goal.finish('aborted')
         self.watcher.spin_for(0.1)
         self.stop()
 
-    def _publish(self, topic_name: str, message: Any) -> None:
-        if topic_name not in self.publishers:
-            self.publishers[topic_name] = Topic(topic_name).meet(self.watcher, type(message))
-        self.publishers[topic_name].publish(message)
-
     def let_client_know(self) -> None:
         """Wait until the client has processed what was sent before. Raises CheckFailed."""
-        self.answering_nodes()
-        self.watcher.spin_for(SOON_SEC if self._mute else 0.0)
+        self.client.answering(may_sleep=self.may_sleep)
+        self.watcher.spin_for(SOON_SEC if self.client.mute else 0.0)
         goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
         self.asked.expect_no_others(self.goals)
 
-    def answering_nodes(self) -> set[str]:
-        """Full names of the client's nodes whose parameter services have always answered."""
-        names = {*self._outcomes.publishers()} - self._mute
-        self._mute |= {name for name in names if not answers_parameters(self.watcher, name)}
-        return names - self._mute
+    def _spin_until(self, done: Callable[[], bool], free_sec: float, *, may_sleep: bool) -> bool:
+        if not may_sleep and not self.watcher.spin_until(done, timeout_sec=QUIET_SEC):
+            self.client.expect_awake()
+        return self.watcher.spin_until_free(done, free_sec=free_sec)
+
+    def _is_lost(self, before: int) -> bool:
+        """Whether no goal comes beyond the first `before`, even if the client is late."""
+        self.client.answering()
+        late_sec = AGAIN_SEC if self.client.mute else 0.0
+        return not self._spin_until(lambda: len(self.goals) > before, late_sec, may_sleep=True)
 
     def _why_no_goal(self) -> str:
         how = {'asked': self.asked, 'was_away': self._was_away, **self._client_state()}
@@ -197,4 +196,4 @@ class ServedAction(ScriptedActionServer):
         return goal_senders.why_silent(self.watcher, hint, **self._client_state())
 
     def _client_state(self) -> dict[str, Any]:
-        return {'node_names': self._outcomes.publishers(), 'raised': self._raised}
+        return {'node_names': self._outcomes.publishers(), 'raised': self.client.raised}

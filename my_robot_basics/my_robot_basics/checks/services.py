@@ -20,8 +20,9 @@ ANSWER_SEC = 4.0
 """How long to wait for a response, in s of free time."""
 LOOK_SEC = 0.5
 """How often to ask the notebook meanwhile whether a callback has raised."""
-PARAMETERS_SEC = 1.0
-"""How long a spinning node may take to answer for a parameter, in s of free time."""
+PARAMETERS_SEC, LATE_SEC = 1.0, 0.5
+"""How long a spinning node may take to answer for a parameter, in s of free time; after how long
+this is late, in s of wall time."""
 RESPONSES = QoSProfile(depth=1000)
 """The queue for responses is long: a wrong server's additional responses must not push any out."""
 
@@ -154,12 +155,19 @@ def wait_for_all(
     return all(future.done() for future in asked)
 
 
-def answers_parameters(watcher: Watcher, node_name: str) -> bool:
-    """Whether a node's parameter service answers: if so, the node spins and is not blocked."""
+def answers_parameters(
+    watcher: Watcher, node_name: str, *, when_late: Callable[[], None] | None = None
+) -> bool:
+    """Whether a node's parameter service answers: if so, the node spins and is not blocked.
+
+    `when_late()` is called once if there is no answer within LATE_SEC.
+    """
     client = watcher.node.create_client(GetParameters, f'{node_name}/get_parameters')
     told = watcher.spin_until_free(client.service_is_ready, free_sec=PARAMETERS_SEC)
     if told:
         asked = client.call_async(GetParameters.Request(names=['use_sim_time']))
+        if when_late and not watcher.spin_until(asked.done, timeout_sec=LATE_SEC):
+            when_late()
         told = watcher.spin_until_free(asked.done, free_sec=PARAMETERS_SEC)
     watcher.node.destroy_client(client)
     return told

@@ -38,6 +38,11 @@ def sleeps(line: str) -> str:
     )
 
 
+def sleeping_call(line: str) -> str:
+    """That line of a callback if the callback sleeps there, else ''."""
+    return line if _SLEEP.search(line) else ''
+
+
 def waits_for_server(name: str) -> str:
     """The advice for a node that has not sent a request, and blocks."""
     return (
@@ -126,8 +131,8 @@ class WaitingClient:
         raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
-        if _SLEEP.search(line):
-            return sleeps(student_text(line))
+        if call := sleeping_call(line):
+            return sleeps(student_text(call))
         waits = waits_for_answer if has_asked else waits_for_server
         return hint or waits(self.name)
 
