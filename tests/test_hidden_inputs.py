@@ -2,10 +2,13 @@
 
 import random
 import re
+import sys
 
 import pytest
 from course_maker import TOY, answered, make_course, submit, toy_lesson, write_source
-from my_robot_basics.checks import CheckFailed, expect, fail
+from geometry_msgs.msg import Point
+from my_robot_basics.checks import CheckFailed, expect, fail, student
+from my_robot_basics.exchange import responder
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.hidden_source import mark_hidden_part, without_hidden_part
 from my_robot_basics.validate.cells import role
@@ -62,7 +65,7 @@ WAYS = (
     'return {"x": x}',
     'return "x" * x',
     'return float("nan")',
-    'return 3',
+    'return type(f"Metaclass_asked_for_{x}", (), {})()',
     'return None',
 )
 NUMBER = re.compile(r'\d[\d,]{3,}\d')
@@ -190,6 +193,44 @@ def test_a_name_by_a_student_cannot_end_its_own_quotation(told):
 )
 def test_only_names_of_builtin_exceptions_are_shown_to_the_student(told, said, kept):
     assert hidden.without_inputs(hidden.student_exception(said)) == kept
+
+
+@pytest.mark.parametrize(
+    ('answer', 'reason'),
+    [
+        (
+            lambda x: type(f'Metaclass_asked_for_{x}', (), {})(),
+            '`f` does not always return a Point: make a message of it with parentheses, …()',
+        ),
+        (
+            lambda x: raise_error(f"invalid character '{chr(0xFF21 + x)}' (U+"),
+            '`f` raises `ValueError: …`, so write … in its place: call … in a cell of your own to '
+            'see where',
+        ),
+        (
+            lambda x: raise_error(
+                'Invalid topic name: topic name must not contain characters other than '
+                f"alphanumerics, '_', '~', '{{', or '}}': 'a{chr(0x1D41A + x)}' ^"
+            ),
+            '`f` raises `ValueError: …`, so write … in place of …, a full-width character: call … '
+            'in a cell of your own to see where',
+        ),
+    ],
+    ids=['a class', 'a character', 'a character of a name'],
+)
+def test_no_hint_quotes_what_an_answer_chose_after_a_hidden_input(
+    told, monkeypatch, answer, reason
+):
+    monkeypatch.setenv('MY_ROBOT_BASICS_ROOM', 'test')
+    monkeypatch.setattr('builtins.input', responder.answer)
+    monkeypatch.setattr(sys.modules['__main__'], 'f', answer, raising=False)
+    with pytest.raises(CheckFailed) as failure:
+        student.call('f', 7, returns=Point)
+    assert str(failure.value) == f'{hidden.PLACE}{reason}'
+
+
+def raise_error(said):
+    raise ValueError(said)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import fail, shorten
+from my_robot_basics.feedback.hidden import student_text
 
 _CLASS_OF_A_MESSAGE = 'Metaclass_'
 """rosidl's metaclass of a message class is called this, plus the name of that class."""
@@ -26,7 +27,8 @@ def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tu
     if values.WRONG_FIELD in body:
         hint = 'give each field a value of the type that get_fields_and_field_types() names'
     elif body.startswith(_CLASS_OF_A_MESSAGE):
-        name = body.removeprefix(_CLASS_OF_A_MESSAGE)
+        # any class may be called so, also after an input that is hidden
+        name = student_text(shorten(body.removeprefix(_CLASS_OF_A_MESSAGE), 60))
         return f'the class {name}', f'make a message of it with parentheses, {name}()'
     elif isinstance(wanted, type) and body == wanted.__name__:
         return f'another class {body}', f'make no class {body} of your own: import that of ROS'

@@ -8,7 +8,7 @@ from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
 from my_robot_basics.feedback.characters import in_ascii
 from my_robot_basics.feedback.error_words import BY_WORDS
-from my_robot_basics.feedback.hidden import without_marks
+from my_robot_basics.feedback.hidden import student_text, without_marks
 from my_robot_basics.feedback.message_errors import OF_MESSAGES
 from my_robot_basics.feedback.missing_attributes import hint_for_missing
 from my_robot_basics.feedback.moved_names import MOVED
@@ -56,15 +56,19 @@ def _about_character(character: str | None) -> str:
     if character is None:
         return ', so type that line again: it has a space of another kind, as copied text may have'
     plain = _SIGNS.get(character) or in_ascii(character)
-    return f', so write {plain!r} in its place' if plain else ''
+    if not plain:
+        return ''
+    plain = student_text(repr(plain))
+    return f', so write {plain} in its place'
 
 
 def _about_name(name: str, *, is_node: bool) -> str:
     """Return a hint about the characters that a ROS name may have."""
-    strange = re.search(r'\W' if is_node else r'[^\w/~{}]', name, re.ASCII)
-    plain = unicodedata.normalize('NFKC', strange[0]) if strange else ''
-    if strange and re.fullmatch(r'\w' if is_node else r'[\w/~{}]', plain, re.ASCII):
-        return f', so write {plain!r} in place of {strange[0]!r}, a full-width character'
+    found = re.search(r'\W' if is_node else r'[^\w/~{}]', name, re.ASCII)
+    plain = unicodedata.normalize('NFKC', found[0]) if found else ''
+    if found and re.fullmatch(r'\w' if is_node else r'[\w/~{}]', plain, re.ASCII):
+        plain, strange = student_text(repr(plain)), student_text(repr(found[0]))
+        return f', so write {plain} in place of {strange}, a full-width character'
     if is_node:
         return ', so write a name of letters from a to z, digits and _ alone'
     return ', so write a name of letters from a to z, digits, _ and / alone'
