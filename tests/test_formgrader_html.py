@@ -33,6 +33,21 @@ def test_text_code_and_output_are_rendered_without_scripts():
     assert 'onclick' not in html
 
 
+WRITTEN = ('data:', 'DATA:', ' data:', '\tdata:', 'da&#9;ta:', 'da&#10;ta:', '&#1;data:')
+WRITTEN += ('&#100;ata:', 'data&colon;', 'data&#x3a;', 'javascript:', 'java&#10;script:')
+
+
+@pytest.mark.parametrize('written', WRITTEN)
+def test_a_link_leads_to_no_page_that_is_in_the_link_itself(written):
+    html = formgrader.render_markdown(f'<a href="{written}text/html,x">open</a>', {})
+    assert html == '<p><a>open</a></p>\n'
+
+
+def test_a_link_to_a_page_elsewhere_is_kept():
+    html = formgrader.render_markdown('[one](https://docs.ros.org/data:x) [two](#below)', {})
+    assert '<a href="https://docs.ros.org/data:x">one</a> <a href="#below">two</a>' in html
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     'text', [FORMULAS, '<a ' * 60_000, '![a](files/' * 60_000], ids=['math', 'tags', 'files']

@@ -4,7 +4,9 @@ The formgrader's template omits nbconvert's `sanitize_html` for markdown cells, 
 the server's own process. So what students wrote is turned into HTML in a process with limits.
 """
 
+import re
 from functools import lru_cache
+from html import unescape
 
 import bleach
 from jinja2 import pass_context
@@ -28,6 +30,8 @@ FILTERS = {
 _TAGS = {'p', 'em', 'strong', 'del', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'br', 'hr'}
 _TAGS |= {'table', 'thead', 'tbody', 'tr', 'th', 'td'}
 _TAGS |= {'h1', 'h2', 'h3', 'h4', 'h5', 'h6', 'a', 'img', 'span', 'div'}
+_IGNORED = re.compile(r'[\0-\x20]')
+"""Characters that browsers ignore at the beginning of an address, and some within it."""
 _PASTED = ('data:image/png;base64,', 'data:image/jpeg;base64,')
 
 
@@ -35,7 +39,8 @@ def _allowed(tag: str, name: str, value: str) -> bool:
     """Whether a tag may have an attribute; bleach itself checks the protocol of links."""
     if tag == 'img':
         return name == 'alt' or (name == 'src' and value.startswith(_PASTED))
-    return tag == 'a' and name == 'href' and not value.lower().startswith('data:')
+    address = _IGNORED.sub('', unescape(value)).lower()
+    return tag == 'a' and name == 'href' and not address.startswith('data:')
 
 
 @pass_context
