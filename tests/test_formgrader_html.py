@@ -1,5 +1,7 @@
 """The HTML that the formgrader shows is made in a process with limits."""
 
+import re
+
 import nbformat
 import pytest
 from nbconvert import HTMLExporter
@@ -33,19 +35,37 @@ def test_text_code_and_output_are_rendered_without_scripts():
     assert 'onclick' not in html
 
 
-WRITTEN = ('data:', 'DATA:', ' data:', '\tdata:', 'da&#9;ta:', 'da&#10;ta:', '&#1;data:')
-WRITTEN += ('&#100;ata:', 'data&colon;', 'data&#x3a;', 'javascript:', 'java&#10;script:')
+HIDDEN = 'a\u202eb\u200bc'
+SHOWN = r'a\u202eb\u200bc'
 
 
-@pytest.mark.parametrize('written', WRITTEN)
-def test_a_link_leads_to_no_page_that_is_in_the_link_itself(written):
-    html = formgrader.render_markdown(f'<a href="{written}text/html,x">open</a>', {})
-    assert html == '<p><a>open</a></p>\n'
+def test_characters_that_conceal_text_are_spelled_out_in_all_that_a_student_wrote():
+    text = nbformat.v4.new_markdown_cell(f'{HIDDEN} &#x202e; &rlm; 👩\u200d🔬\n\n<p>&#8238;</p>')
+    outputs = [
+        nbformat.v4.new_output('stream', text=HIDDEN),
+        nbformat.v4.new_output('display_data', data={'text/html': f'<b>{HIDDEN}&#8238;</b>'}),
+        nbformat.v4.new_output('display_data', data={'text/plain': HIDDEN}),
+        nbformat.v4.new_output('error', ename='E', evalue=HIDDEN, traceback=[HIDDEN]),
+    ]
+    html = shown(text, nbformat.v4.new_code_cell(f'# {HIDDEN}', outputs=outputs))
+    assert not re.search('[\u200b\u200f\u202a-\u202e]|&#x202e;|&#8238;|&rlm;', html)
+    assert html.count(SHOWN) == 6
+    assert '👩\u200d🔬' in html
 
 
-def test_a_link_to_a_page_elsewhere_is_kept():
-    html = formgrader.render_markdown('[one](https://docs.ros.org/data:x) [two](#below)', {})
-    assert '<a href="https://docs.ros.org/data:x">one</a> <a href="#below">two</a>' in html
+LINKS = {
+    '[plot](/user/eve/plot?a=1&b=2)': 'plot (/user/eve/plot?a=1&amp;b=2)',
+    '<a href="https://a.b/&#x202e;c">plot</a>': r'plot (https://a.b/\u202ec)',
+    '<a href=" da&#10;ta:text/html,x">plot</a>': 'plot ( da\nta:text/html,x)',
+    '<a href="java&#10;script:x">plot</a>': 'plot',
+    '<a>plot</a>': 'plot',
+}
+
+
+@pytest.mark.parametrize('link', LINKS)
+def test_a_link_is_shown_with_its_address_and_leads_nowhere(link):
+    """On a hub it might lead to the student's server, whose pages may do what the reader may."""
+    assert formgrader.render_markdown(link, {}) == f'<p><a>{LINKS[link]}</a></p>\n'
 
 
 @pytest.mark.slow

@@ -3,7 +3,6 @@
 import re
 from contextlib import suppress
 from functools import cache, partial
-from html import unescape
 
 import bleach
 import nbformat
@@ -19,6 +18,7 @@ from pygments.lexers import PythonLexer
 from grader.common.text import visible
 from grader.kernels.isolation import NO_SANDBOX
 from grader.notebook.restore import KEY, NO_ANSWERS
+from grader.report.hidden_characters import spell_out
 from grader.report.page_parts import find_sections
 from grader.report.templates import put_markup, template
 
@@ -27,7 +27,6 @@ _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
 _CODE = HtmlFormatter(style='xcode', nowrap=True)
 _CODE_IN_THE_DARK = HtmlFormatter(style='github-dark', nowrap=True)
 _FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
-_ENTITY = re.compile(r'&(#\d+|#x[0-9a-f]+|\w+);?', re.IGNORECASE)
 
 
 def render_page(as_json: dict, about: dict, plain: str = '') -> str:
@@ -75,12 +74,7 @@ def _colour(source: str) -> Markup:
 def _rich(text: str) -> Markup:
     """Turn markdown into HTML with harmless tags only."""
     html = bleach.clean(markdown2html(text), tags=_TAGS, attributes={}, strip=True)
-    return Markup(_ENTITY.sub(lambda entity: _visible_entity(entity[0]), html))
-
-
-def _visible_entity(entity: str) -> str:
-    meant = unescape(entity)
-    return entity if visible(meant) == meant else visible(meant)
+    return Markup(spell_out(html))
 
 
 def _words(text: str) -> Markup:
