@@ -13,7 +13,7 @@ try:
     from grader.common.logs import NBGRADER_LOGGING
     from grader.course import Course
     from grader.report.feedback import FEEDBACK_PASSES
-    from grader.report.formgrader import FILTERS
+    from grader.report.formgrader import FILTERS, OUTPUT_KINDS
     from grader.storage.database import make_ready
     from grader.storage.pipeline import AUTOGRADE_PASSES, SANITIZE_PASSES
 
@@ -61,3 +61,4 @@ c.ExportApp.plugin_class = 'grader.export.nbgrader_export.CsvExport'
 # the formgrader shows what students wrote: nothing of it may run there
 c.HTMLExporter.sanitize_html = True
 c.HTMLExporter.filters = FILTERS
+c.NbConvertBase.display_data_priority = OUTPUT_KINDS

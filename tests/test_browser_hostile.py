@@ -34,6 +34,8 @@ TIMEOUT_SEC = 120
 pytestmark = drives_chromium
 
 ELSEWHERE = 'evil.invalid'
+OWN_SERVER = '/user/eve/plot'
+"""A page of a student's server on a hub: it may do what the person who opens it may do."""
 BY_NAME = '<img src=x onerror=alert(1)>'
 STUDENT = "'-alert(1)-'&lt;{{7*7}}"
 """A name that a folder can have; a folder named BY_NAME is not graded."""
@@ -41,6 +43,7 @@ EVIL = (
     f'evil <script>alert(1)</script>{BY_NAME}<svg onload=alert(1)></svg>'
     '<iframe srcdoc="<script>parent.alert(1)</script>"></iframe>'
     '<a href="javascript:alert(1)">x</a><style onload=alert(1)>*{}</style>'
+    f'<a href="{OWN_SERVER}">x</a>'
     f'<math><mtext><mglyph><style><img src=x onerror=alert(1)></style></mtext></math>'
     f'<object data="javascript:alert(1)"></object><link rel=stylesheet href="//{ELSEWHERE}/x">'
 )
@@ -101,10 +104,14 @@ class Browser:
         self.harm.clear()
         self.page.goto(address)
         self.page.wait_for_load_state('networkidle')
-        waiting = self.page.evaluate("""() => [...document.querySelectorAll('*')].flatMap(each =>
+        waiting = self.page.evaluate(
+            """server => [...document.querySelectorAll('*')].flatMap(each =>
             [...each.attributes].filter(a => /^\\s*javascript:(?!void)/i.test(a.value)
                 || (a.name.startsWith('on') && a.value.includes('alert(1)'))
-            ).map(a => `${each.tagName} ${a.name}=${a.value}`))""")
+                || (a.name == 'href' && a.value.includes(server))
+            ).map(a => `${each.tagName} ${a.name}=${a.value}`))""",
+            OWN_SERVER,
+        )
         return self.harm + waiting
 
     def text(self):
@@ -126,7 +133,9 @@ def course(tmp_path_factory):
     write_source(course, lesson)
     release(course)
     register(course, TOY)
-    notebook = answered(course, f'# {EVIL}', explained=f'{EVIL} [x](javascript:alert(1)) ![y](z)')
+    notebook = answered(
+        course, f'# {EVIL}', explained=f'{EVIL} [x](javascript:alert(1)) [x]({OWN_SERVER}) ![y](z)'
+    )
     notebook.metadata['widgets'] = {STATE: {'version_major': 2, 'state': {'0': MODEL}}}
     notebook.metadata['title'] = EVIL
     for cell in notebook.cells:

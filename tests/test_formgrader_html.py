@@ -16,14 +16,17 @@ FORMULAS = r'\begin{a}' * 40_000
 
 def shown(*cells):
     """Return the HTML of cells, from the exporter that nbgrader_config.py sets up."""
-    options = {'filters': formgrader.FILTERS, 'sanitize_html': True}
-    exporter = HTMLExporter(config=Config({'HTMLExporter': options}))
+    options = {
+        'HTMLExporter': {'filters': formgrader.FILTERS, 'sanitize_html': True},
+        'NbConvertBase': {'display_data_priority': formgrader.OUTPUT_KINDS},
+    }
+    exporter = HTMLExporter(config=Config(options))
     return exporter.from_notebook_node(nbformat.v4.new_notebook(cells=list(cells)))[0]
 
 
 def test_text_code_and_output_are_rendered_without_scripts():
     code = nbformat.v4.new_code_cell('def f():\n    pass')
-    data = {'text/html': '<b onclick="x()">bold</b><script>x()</script>'}
+    data = {'text/html': '<a href="/user/eve">x</a>', 'text/plain': '<b>as text</b>'}
     code.outputs = [nbformat.v4.new_output('display_data', data=data)]
     text = nbformat.v4.new_markdown_cell('*so* `it` is: $x^2$ ![a](attachment:a.png)')
     text.attachments = {'a.png': {'image/png': 'aGVsbG8='}}
@@ -31,8 +34,17 @@ def test_text_code_and_output_are_rendered_without_scripts():
     assert '<em>so</em> <code>it</code> is: $x^2$' in html
     assert 'src="data:image/png;base64,aGVsbG8="' in html
     assert '<span class="k">def</span>' in html
-    assert '<b>bold</b>' in html
-    assert 'onclick' not in html
+    assert '&lt;b&gt;as text&lt;/b&gt;' in html
+    assert '/user/eve' not in html
+
+
+@pytest.mark.parametrize('kind', ['text/html', 'text/latex', 'text/markdown', 'image/svg+xml'])
+def test_only_text_and_pictures_are_shown_of_an_output(kind):
+    data = {kind: 'it leads elsewhere'}
+    output = nbformat.v4.new_output('display_data', data=data)
+    with pytest.warns(UserWarning, match='not able to be represented'):
+        html = shown(nbformat.v4.new_code_cell('x = 1', outputs=[output]))
+    assert 'it leads elsewhere' not in html
 
 
 HIDDEN = 'a\u202eb\u200bc'
@@ -43,13 +55,12 @@ def test_characters_that_conceal_text_are_spelled_out_in_all_that_a_student_wrot
     text = nbformat.v4.new_markdown_cell(f'{HIDDEN} &#x202e; &rlm; 👩\u200d🔬\n\n<p>&#8238;</p>')
     outputs = [
         nbformat.v4.new_output('stream', text=HIDDEN),
-        nbformat.v4.new_output('display_data', data={'text/html': f'<b>{HIDDEN}&#8238;</b>'}),
         nbformat.v4.new_output('display_data', data={'text/plain': HIDDEN}),
         nbformat.v4.new_output('error', ename='E', evalue=HIDDEN, traceback=[HIDDEN]),
     ]
     html = shown(text, nbformat.v4.new_code_cell(f'# {HIDDEN}', outputs=outputs))
     assert not re.search('[\u200b\u200f\u202a-\u202e]|&#x202e;|&#8238;|&rlm;', html)
-    assert html.count(SHOWN) == 6
+    assert html.count(SHOWN) == 5
     assert '👩\u200d🔬' in html
 
 
@@ -66,6 +77,17 @@ LINKS = {
 def test_a_link_is_shown_with_its_address_and_leads_nowhere(link):
     """On a hub it might lead to the student's server, whose pages may do what the reader may."""
     assert formgrader.render_markdown(link, {}) == f'<p><a>{LINKS[link]}</a></p>\n'
+
+
+FORMULAS_WITH_A_LINK = (r'$\href{/user/eve}{x}$', r'$\mmlToken{mi}[href="/user/eve"]{x}$')
+FORMULAS_WITH_A_LINK += (r'<p>$\&#104;ref{/user/eve}{x}$</p>', r'<p>$\<!-- -->href{/a}{x}$</p>')
+
+
+@pytest.mark.parametrize('formula', FORMULAS_WITH_A_LINK)
+def test_a_formula_that_would_become_a_link_is_not_typeset(formula):
+    html = formgrader.render_markdown(formula, {})
+    assert html.startswith('<div class="tex2jax_ignore"><p>$')
+    assert formgrader.render_markdown('$x^2$', {}) == '<p>$x^2$</p>\n'
 
 
 @pytest.mark.slow

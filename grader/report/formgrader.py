@@ -4,6 +4,7 @@ The formgrader's template omits nbconvert's `sanitize_html` for markdown cells, 
 the server's own process. So what students wrote is turned into HTML in a process with limits.
 """
 
+import re
 from collections.abc import Iterator
 from functools import lru_cache
 from html import unescape
@@ -13,6 +14,7 @@ from bleach.html5lib_shim import Filter
 from jinja2 import pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
+from my_robot_basics.validate.pictures import KINDS
 from nbconvert import HTMLExporter
 from nbconvert import filters as nbconvert_filters
 
@@ -30,9 +32,13 @@ FILTERS = {
     'strip_files_prefix': 'grader.report.formgrader.without_files_prefix',
 }
 """They replace filters of nbconvert's HTMLExporter."""
+OUTPUT_KINDS = [*KINDS, 'text/plain']
+"""What is shown of an output, as on the page of feedback: HTML and formulas may have links."""
 _TAGS = {'p', 'em', 'strong', 'del', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'br', 'hr'}
 _TAGS |= {'table', 'thead', 'tbody', 'tr', 'th', 'td'}
 _TAGS |= {'h1', 'h2', 'h3', 'h4', 'h5', 'h6', 'a', 'img', 'span', 'div'}
+_LINKS_IN_FORMULAS = re.compile(r'\\(href|mmlToken|enclose)')
+"""TeX with which MathJax, which typesets the formgrader's pages, makes links."""
 _PASTED = ('data:image/png;base64,', 'data:image/jpeg;base64,')
 
 
@@ -101,7 +107,13 @@ def render_markdown(text: str, attachments: dict) -> str:
         protocols={'http', 'https', 'mailto', 'data'},
         filters=[_AddressesAsText],
     )
-    return spell_out(cleaner.clean(html))
+    html = spell_out(cleaner.clean(html))
+    # MathJax leaves an element of this class as it is
+    return f'<div class="tex2jax_ignore">{html}</div>' if _has_linked_formula(html) else html
+
+
+def _has_linked_formula(html: str) -> bool:
+    return _LINKS_IN_FORMULAS.search(unescape(html)) is not None
 
 
 def render_code(source: str) -> str:
