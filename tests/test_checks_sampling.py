@@ -21,6 +21,7 @@ from my_robot_basics.checks.clock import SimulatedClock
 from my_robot_basics.checks.driven_topic import DrivenTopic
 from my_robot_basics.checks.inconclusive import Inconclusive
 from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -275,6 +276,14 @@ def test_honest_nodes_that_are_no_plain_timers_pass(capfd, node, out):
             assert recording.clock == 'wall'
             out = ''
     assert capfd.readouterr() == (out, '')
+
+
+def test_a_note_in_quiet_mode_names_no_node(monkeypatch):
+    """A node may take a name after an earlier check's hidden inputs."""
+    monkeypatch.setattr(hidden, '_quiet', True)
+    with running('steady_clock'):
+        note = topic(TOPIC).record().note
+    assert note == IGNORES.replace('/kinematics_publisher', '…').rstrip()
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage, TooSlow
 from my_robot_basics.checks.recorder import Recorder
 from my_robot_basics.checks.recording import Recording, Sample
 from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.feedback.hidden import is_quiet
 from my_robot_basics.graph.stop_reasons import what_raised
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch
@@ -101,5 +102,6 @@ def goes_on(watcher: Watcher, recorder: Recorder, earlier: Recording) -> bool:
 
 
 def _note(recorder: Recorder) -> str:
-    name = shorten(', '.join(recorder.publishers()))  # in one line: each line would be a note
+    # in one line: each line would be a note; a node's name may tell of inputs that are hidden
+    name = '…' if is_quiet() else shorten(', '.join(recorder.publishers()))
     return f"note: {name} ignores the robot's clock (use_sim_time); judged on the wall clock"
