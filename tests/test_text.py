@@ -73,6 +73,14 @@ HONEST = [
 ]  # fmt: skip
 
 
+def test_marks_that_pile_up_over_other_lines_are_spelled_out():
+    assert visible('a' + '\u0323\u0302' * 3 + 'b') == 'a' + '\u0323\u0302' * 3 + 'b'
+    assert visible('a' + '\u0302' * 8 + 'b') == 'a' + '\u0302' * 6 + r'\u0302\u0302' + 'b'
+    assert visible('a' + '\u0302\u20dd' * 4 + 'b').endswith(r'\u0302\u20ddb')
+    pointed = '\u05e9\u05b8\u05bc\u05c1\u0591'  # as in the Hebrew Bible
+    assert visible(pointed) == pointed
+
+
 @pytest.mark.parametrize('text', HONEST)
 def test_words_of_any_language_and_emoji_stay_unchanged(text):
     assert visible(text) == text

@@ -15,6 +15,9 @@ _BLANK = re.compile('[\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0]')
 _DOUBTFUL = re.compile(f'[^\n\t -~\u00a1-\u00ac\u00ae-\u02ff\u4e00-\u9fff]|[{_SELECTORS}]')
 """Characters that need a closer check; most text has none of them."""
 _SELECTOR = re.compile(f'[{_SELECTORS}]')
+MOST_MARKS = 6
+"""How many marks may stand above and below one letter: more would cover the lines around it. No
+language needs as many."""
 
 
 def printable(text: object) -> str:
@@ -33,7 +36,8 @@ def visible(text: str) -> str:
 
 def _spelled(text: str, place: int) -> str:
     character = text[place]
-    if _shows(character, before=text[place - 1 : place], after=text[place + 1 : place + 2]):
+    shows = _shows(character, before=text[place - 1 : place], after=text[place + 1 : place + 2])
+    if shows and not _is_piled_up(text[max(0, place - MOST_MARKS) : place + 1]):
         return character
     return character.encode('unicode_escape', 'replace').decode()
 
@@ -45,6 +49,13 @@ def _shows(character: str, *, before: str, after: str) -> bool:
     if _SELECTOR.match(character):
         return before in tuple('0123456789#*') or (_joins(before) and not _SELECTOR.match(before))
     return character.isprintable() and not _BLANK.match(character)
+
+
+def _is_piled_up(last: str) -> bool:
+    """Whether these characters are too many marks in a row; the last one is in question."""
+    return len(last) > MOST_MARKS and all(
+        unicodedata.category(each) in ('Mn', 'Me') for each in last
+    )
 
 
 def _joins(character: str) -> bool:
