@@ -10,6 +10,7 @@ from collected import NOTEBOOK, rows, submitted, tree, write
 from course_maker import TOY, answered, executed
 from nbgrader.coursedir import CourseDirectory
 
+from grader.__main__ import main
 from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
@@ -69,6 +70,21 @@ def test_collecting_again_changes_nothing(course, came_in):
     for _ in range(2):
         assert set(rows(course, came_in).values()) == {KNOWN}
         assert tree(course.gradebook) == first
+
+
+def test_a_course_of_ilias_that_was_collected_under_longer_names_keeps_them(
+    course, came_in, capsys
+):
+    whole = 'Lovelace_Ada_ada_4711'
+    write(course.folder('submitted', whole, TOY) / NOTEBOOK, 'first')
+    write(came_in / whole / NOTEBOOK, 'second')
+    assert main(['collect', str(came_in)], course=course) == 0
+    (row,) = (line for line in capsys.readouterr().out.splitlines() if whole in line)
+    assert 'kept in gradebook/submitted_before/' in row
+    assert 'keeps it; a new student would be Lovelace_Ada' in row
+    assert submitted(course, whole) == {NOTEBOOK: 'second'}
+    assert before(course, whole) == {f'1/submitted/{NOTEBOOK}': 'first'}
+    assert [folder.name for folder in course.folder('submitted', '', '').iterdir()] == [whole]
 
 
 def test_a_later_submission_counts_and_the_earlier_one_is_kept_with_its_time(course, came_in):

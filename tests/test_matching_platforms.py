@@ -248,6 +248,33 @@ def test_students_are_found_in_the_download_of_all_submissions_of_ilias(form, at
     assert owners(*found, students=['ada', 'Lovelace_Ada']) == (students, [])
 
 
+@pytest.mark.parametrize(
+    ('known', 'said'),
+    [
+        ([], 'known by this name from before, and keeps it; a new student would be Lovelace_Ada'),
+        (
+            ['Lovelace_Ada'],
+            'known by this name and as Lovelace_Ada, and taken under this one: if ',
+        ),
+    ],
+)
+@pytest.mark.parametrize('inside', ['', 'work.zip/', 'ada_lovelace/', 'Ada Lovelace_'])
+def test_a_student_known_by_the_whole_name_of_an_ilias_folder_keeps_it(inside, known, said, at):
+    """As in a course that was collected before that form of names was known."""
+    found = [at(f'{ILIAS[0]}/{inside}03_publisher.ipynb'), at(f'{ILIAS[1]}/03_publisher.ipynb')]
+    hand_ins, left = match(found, ASSIGNMENTS, students=[ILIAS[0], *known])
+    his, hers = hand_ins
+    assert (his.student_id, his.remark) == ('Babbage_Charles', '')
+    assert (hers.student_id, hers.label.number, left) == (ILIAS[0], '4711', [])
+    assert hers.remark.startswith(said)
+
+
+def test_a_namesake_of_a_student_with_an_earlier_name_is_another_student(at):
+    found = [at(f'{who}/03_publisher.ipynb') for who in (ILIAS[0], 'Lovelace_Ada_a.l_4713')]
+    taken, left = owners(*found, students=[ILIAS[0]])
+    assert (taken, left) == ([('Lovelace_Ada', '03_publisher'), (ILIAS[0], '03_publisher')], [])
+
+
 def test_files_that_come_late_in_ilias_keep_the_names_that_students_gave_them(at):
     late = f'{ILIAS[0]}/Late Submission - '
     files = [at(late + name) for name in ('02_joint_state.ipynb', 'helper.py')]

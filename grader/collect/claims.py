@@ -48,7 +48,7 @@ class Claims:
         """Yield other students named in an upload, if the name has a student's form, and where."""
         for at, name in enumerate(owner.inside, len(each.parts) - 1 - len(owner.inside)):
             who = self._naming.forms.student_of(name)
-            if not self._naming.may_name(who, owner.student_id):
+            if not self._naming.may_name(who, owner.student_id, *owner.aliases):
                 yield who, who != strip_archive_ending(name), each.parts[:at]
 
     def _folders_of(self, each: Incoming, owner: Owner) -> Iterator[tuple[str, ...]]:
@@ -57,5 +57,6 @@ class Claims:
         What lies beside that one under another name may be another student's.
         """
         for at in range(len(owner.above) + 1, len(each.parts) - 1):
-            if same_person(self._naming.forms.student_of(each.parts[at]), owner.student_id):
+            who = self._naming.forms.student_of(each.parts[at])
+            if any(same_person(who, name) for name in (owner.student_id, *owner.aliases)):
                 yield each.parts[:at]

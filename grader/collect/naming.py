@@ -41,6 +41,8 @@ class Owner:
     """The folders around the folder, archive or file that decided."""
     inside: tuple[str, ...] = ()
     """The folders and archives inside that one, down to the notebook."""
+    aliases: tuple[str, ...] = ()
+    """Other names of the same student, which names inside may be spellings of."""
 
 
 class Naming:

@@ -1,7 +1,9 @@
 """The owner of each notebook; a notebook is refused if names disagree or students share a name."""
 
+import unicodedata
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from grader.collect.claims import Claims
 from grader.collect.incoming import Incoming, is_notebook
@@ -15,11 +17,12 @@ def find_owners(
     """Return each notebook's owner, remarks on strange names, and why others have no owner."""
     owners: dict[Incoming, Owner] = {}
     problems: dict[Incoming, str] = {}
-    students = list(students)
+    students = set(students)
     naming = Naming(found, assignments, students)
     for each in filter(is_notebook, found):
         try:
-            owners[each] = _require_same_user(each, naming.owner(each))
+            owner = _require_same_user(each, naming.owner(each))
+            owners[each] = _keep_earlier_name(each, owner, students)
         except UnclearOwner as unclear:
             problems[each] = str(unclear)
     numbers = defaultdict(set)
@@ -37,7 +40,8 @@ def find_owners(
             problem = _several_students_problem(owner)
         if problem:
             problems[each] = problem
-        remarks[each] = remarks[each] or _other_spelling(owner.student_id, known)
+        remark = remarks[each] or _other_spelling(owner.student_id, known)
+        remarks[each] = '; '.join(filter(None, (_earlier_name_remark(owner, students), remark)))
     return {e: owner for e, owner in owners.items() if e not in problems}, remarks, problems
 
 
@@ -59,6 +63,31 @@ def _require_same_user(each: Incoming, owner: Owner) -> Owner:
         f'it is named after {owner.student_id}, and the user {each.login} put it there: ask them. '
         'If you know better, copy it (cp -r) and collect the copy'
     )
+
+
+def _keep_earlier_name(each: Incoming, owner: Owner, students: Collection[str]) -> Owner:
+    """Return the owner; a student who is known by the whole name of a folder keeps that name.
+
+    Before the form of ILIAS was known, the whole name of its folders was the student's.
+    """
+    whole = unicodedata.normalize('NFC', each.parts[len(owner.above)]).strip(' ')
+    label = owner.label
+    if not label or label.platform.number_of != 'student' or label.rest or whole not in students:
+        return owner
+    return replace(owner, student_id=whole, aliases=(owner.student_id,))
+
+
+def _earlier_name_remark(owner: Owner, students: Collection[str]) -> str:
+    """Return a remark if a student keeps an earlier name; another one may be in the gradebook."""
+    for name in owner.aliases:
+        if name in students:
+            return (
+                f'known by this name and as {name}, and taken under this one: if that is the same '
+                'person, compare what both have, and remove the other one as '
+                'docs/for-instructors.md says (If a student leaves)'
+            )
+        return f'known by this name from before, and keeps it; a new student would be {name}'
+    return ''
 
 
 def _namesake_key(owner: Owner) -> tuple:
