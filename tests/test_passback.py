@@ -125,7 +125,55 @@ def test_moodles_own_worksheet_keeps_its_columns_and_missing_rows_are_reported(
         ['Participant 8001', 'Lovelace, A.', 'ada@x.org', '3.5', '5.00', 'Monday, 9:00 AM'],
         ['Participant 8002', 'bob', 'bob@x.org', '1.0', '5.00', '-'],
     ]
-    assert '王 小明 has no row in roster.csv: give this score by hand' in capsys.readouterr().out
+    assert (
+        '王 小明 has the number 8003, which no row of roster.csv has: expected the table of this '
+        'course and assignment; export it again, or give this score by hand'
+    ) in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ('platform', 'lines'),
+    [
+        (
+            'moodle',
+            [
+                'Identifier,Full name,Grade,Maximum Grade,Last modified (grade)',
+                'Participant 9001,Ada Lovelace,,5.00,-',
+                'Participant 9002,Bob,,5.00,-',
+            ],
+        ),
+        ('canvas', ['Student,ID,Section', '"Lovelace, Ada",99,', 'Bob,98,']),
+    ],
+)
+def test_a_row_of_the_same_name_and_another_number_is_not_the_students(
+    platform, lines, course, roster, capsys
+):
+    """It is a namesake's, or the worksheet is of another assignment."""
+    export = {'moodle': moodle, 'canvas': canvas}[platform]
+    _, *rows = export(course, '--roster', roster(*lines))
+    assert [row for row in rows if 'Bob' not in row] == []
+    assert len(rows) == 1
+    assert 'Ada Lovelace has the number ' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ('heading', 'value'), [('Scale', ''), ('Points', '100.00'), ('Maximum grade', 'Pass, fail')]
+)
+def test_a_worksheet_that_does_not_show_the_maximum_is_reported_once(
+    heading, value, course, roster, capsys
+):
+    rows = moodle(
+        course,
+        '--roster',
+        roster(
+            f'Identifier,Full name,Grade,{heading},Last modified (grade)',
+            f'Participant 8001,Ada,,"{value}",-',
+            f'Participant 8002,Bob,,"{value}",-',
+        ),
+    )
+    assert [row[2] for row in rows[1:]] == ['3.5', '1.0']
+    said = capsys.readouterr().out
+    assert said.count('check that its maximum grade is 5 there before you upload the file') == 1
 
 
 def test_the_canvas_file_has_the_columns_up_to_the_section_and_the_scores(course, roster, capsys):
@@ -244,6 +292,14 @@ def test_two_rows_of_one_name_or_two_students_of_one_row_are_left_to_a_person(
             [
                 'Identifier,Full name,Grade,Maximum Grade,Last modified (grade)',
                 'Participant 8001,Ada,,100.00,-',
+            ],
+            'gives in Moodle is 100, and 03_publisher gives 5: set its maximum grade to 5',
+        ),
+        (
+            'moodle',  # as other versions of Moodle write it, after a spreadsheet saved it
+            [
+                'Identifier;Full name;Grade;Maximum grade;Last modified (grade)',
+                'Participant 8001;Ada;;100,00;-',
             ],
             'gives in Moodle is 100, and 03_publisher gives 5: set its maximum grade to 5',
         ),

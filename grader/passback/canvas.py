@@ -7,7 +7,6 @@ Possible is left out: it would change how many points an assignment gives.
 """
 
 import re
-from collections.abc import Mapping
 from pathlib import Path
 
 from grader.collect.platform_ids import StudentNumbers
@@ -48,18 +47,16 @@ def make_table(
     roster = read_roster(roster_path, NEEDED, HOW)
     numbers = StudentNumbers(course)
 
-    def by_number(student: str, row: Mapping[str, str]) -> bool:
-        known = numbers.of(student, scores.assignment).get('canvas')
-        return known == row[ID] if known else student in (row.get(LOGIN), row[ID])
-
     people = [row for row in roster.rows if POINTS not in row[STUDENT]]
     column, notes = _column_of(scores.assignment, roster)
     _check_points(column, scores, roster)
     found = match(
         [each.student_id for each in scores.final],
         Roster(roster.path, roster.headings, tuple(people)),
-        by_number=by_number,
+        number_of=lambda student: numbers.of(student, scores.assignment).get('canvas'),
+        number_in=lambda row: row[ID],
         name_of=lambda row: row[STUDENT],
+        logins_in=lambda row: (row.get(LOGIN, ''), row[ID]),
     )
     about = roster.headings[: roster.headings.index(SECTION) + 1]
     rows: list[list[object]] = [[*about, column]]

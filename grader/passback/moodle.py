@@ -18,7 +18,8 @@ from grader.passback.numbered import table_by_number
 from grader.passback.roster import Roster, match, read_roster
 
 IDENTIFIER, FULL_NAME, GRADE = 'Identifier', 'Full name', 'Grade'
-MAXIMUM, MODIFIED = 'Maximum Grade', 'Last modified (grade)'
+MODIFIED, MAXIMUM = 'Last modified (grade)', 'maximum grade'
+"""The heading of the maximum in lower case: some versions of Moodle write Grade with a capital."""
 NEEDED = (IDENTIFIER, FULL_NAME, GRADE, MODIFIED)
 PARTICIPANT = 'Participant '
 NEVER = '-'
@@ -53,35 +54,49 @@ def make_worksheet(
     roster = read_roster(roster_path, NEEDED, HOW)
     numbers = StudentNumbers(course)
 
-    def by_number(student: str, row: Mapping[str, str]) -> bool:
-        number = numbers.of(student, scores.assignment).get('moodle')
-        return number is not None and row[IDENTIFIER].removeprefix(PARTICIPANT) == number
-
-    students = [each.student_id for each in scores.final]
-    found = match(students, roster, by_number=by_number, name_of=lambda row: row[FULL_NAME])
+    found = match(
+        [each.student_id for each in scores.final],
+        roster,
+        number_of=lambda student: numbers.of(student, scores.assignment).get('moodle'),
+        number_in=lambda row: row[IDENTIFIER].removeprefix(PARTICIPANT),
+        name_of=lambda row: row[FULL_NAME],
+    )
     rows: list[list[object]] = [list(roster.headings)]
+    notes = set()
     for each in scores.final:
         if row := found.rows.get(each.student_id):
-            _check_maximum(row, each, scores.assignment, roster)
+            notes.add(_check_maximum(row, each, scores.assignment, roster))
             filled = {**row, GRADE: each.score}
             rows.append([filled.get(heading, '') for heading in roster.headings])
-    return ImportFile(spreadsheet_table(rows), len(rows) - 1, found.unclear)
+    return ImportFile(
+        spreadsheet_table(rows), len(rows) - 1, found.unclear, tuple(filter(None, notes))
+    )
 
 
 def _check_maximum(
     row: Mapping[str, str], score: FinalScore, assignment: str, roster: Roster
-) -> None:
-    """Check that the assignment has the same maximum in Moodle. Raises CourseError."""
+) -> str:
+    """Check that the assignment has the same maximum in Moodle; return a note if nothing shows it.
+
+    Raises CourseError if it has another one.
+    """
+    expected = f'{score.max_score:g}'
+    said = [row[heading] for heading in roster.headings if heading.casefold() == MAXIMUM]
     try:
-        most = float(row.get(MAXIMUM, '').replace(',', '.'))
-    except ValueError:  # a worksheet without a maximum, or with a scale instead of points
-        return
+        most = float(said[0].replace(',', '.'))
+    except (IndexError, ValueError):  # for example with a scale instead of points
+        return (
+            f"{roster.path.name} has no number in a column 'Maximum Grade', so nothing shows how "
+            f'many points this assignment gives in Moodle: check that its maximum grade is '
+            f'{expected} there before you upload the file'
+        )
     if most != score.max_score:
         raise CourseError(
             f'{roster.path}: the most that this assignment gives in Moodle is {most:g}, and '
-            f'{assignment} gives {score.max_score:g}: set its maximum grade to '
-            f'{score.max_score:g} in Moodle, and download the worksheet again'
+            f'{assignment} gives {expected}: set its maximum grade to {expected} in Moodle, and '
+            'download the worksheet again'
         )
+    return ''
 
 
 def name_feedback_file(student_id: str, number: str, assignment: str) -> str:

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,23 +76,38 @@ def match(
     students: Sequence[str],
     roster: Roster,
     *,
-    by_number: Callable[[str, Mapping[str, str]], bool],
+    number_of: Callable[[str], str | None],
+    number_in: Callable[[Mapping[str, str]], str],
     name_of: Callable[[Mapping[str, str]], str],
+    logins_in: Callable[[Mapping[str, str]], Collection[str]] = lambda row: (),
 ) -> Matches:
-    """Find each student's row: that with the student's number, else the only one with that name.
+    """Find each student's row: that with the student's number on the platform, if it is known.
 
-    A row that may belong to two students is given to neither.
+    Without a number it is the row with the student's login, else the only one with that name: a
+    row with another number is another person's, or of another assignment. A row that may belong
+    to two students is given to neither.
     """
-    candidates = {
-        student: [row for row in roster.rows if by_number(student, row)]
-        or [row for row in roster.rows if same_person(name_of(row), student)]
-        for student in students
-    }
+    numbers = {student: number_of(student) for student in students}
+
+    def rows_of(student: str) -> list[Mapping[str, str]]:
+        if number := numbers[student]:
+            return [row for row in roster.rows if number_in(row) == number]
+        return [row for row in roster.rows if student in logins_in(row)] or [
+            row for row in roster.rows if same_person(name_of(row), student)
+        ]
+
+    candidates = {student: rows_of(student) for student in students}
     taken = [id(row) for rows in candidates.values() if len(rows) == 1 for row in rows]
     found, unclear = {}, []
     for student, rows in candidates.items():
         if len(rows) == 1 and taken.count(id(rows[0])) == 1:
             found[student] = rows[0]
+        elif not rows and numbers[student]:
+            unclear.append(
+                f'{student} has the number {numbers[student]}, which no row of {roster.path.name} '
+                'has: expected the table of this course and assignment; export it again, or give '
+                'this score by hand'
+            )
         else:
             several = (
                 'several rows' if len(rows) > 1 else 'a row that may also be of another student'
