@@ -71,6 +71,10 @@ class Course:
         """Return the path of the students' notebook."""
         return self.root / 'notebooks' / assignment / f'{assignment}.ipynb'
 
+    def solution_path(self, assignment: str) -> Path:
+        """Return the path of the notebook with our answers, to give out after the deadline."""
+        return self.gradebook / 'solutions' / f'{assignment}.ipynb'
+
     def assignments(self) -> list[str]:
         """Return the names of all assignments, sorted."""
         found = (self.root / 'solutions').glob('*/*.ipynb')

@@ -108,6 +108,26 @@ def test_an_open_lesson_is_written_only_early_and_an_undated_one_by_name(
     assert 'Not written' not in capsys.readouterr().out
 
 
+@pytest.mark.parametrize('extension', [{}, {'student_id': 'ada'}])
+def test_answers_of_a_lesson_that_is_open_again_are_named_and_stay(course, capsys, extension):
+    set_due(course, TOY, in_days(-1))
+    assert main(['solutions'], course=course) == 0
+    path = course.solution_path(TOY)
+    before = path.read_bytes()
+    student = ['--student', 'ada'] if extension else []
+    capsys.readouterr()
+    main(['due', TOY, f'{in_days(1):%Y-%m-%d}', *student], course=course)
+    said = f'gradebook/solutions/{TOY}.ipynb has our answers, and {TOY} can be handed in until '
+    assert said in capsys.readouterr().out
+    assert main(['solutions'], course=course) == 1
+    said = 'gradebook/solutions/ has its answers from before: unless students have them already, '
+    assert said in capsys.readouterr().err
+    assert path.read_bytes() == before
+    path.unlink()
+    main(['due'], course=course)
+    assert 'has our answers' not in capsys.readouterr().out
+
+
 @pytest.mark.starts  # to release takes long
 def test_a_mark_scheme_is_kept_out_of_the_release(course):
     release(course)

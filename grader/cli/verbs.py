@@ -71,7 +71,11 @@ def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
 def run_due(course: 'Course', asked: argparse.Namespace) -> int:
     """Set a due date or an extension if one is given, and list all of them."""
     from grader.storage.deadlines import extended_for_nobody
-    from grader.storage.due_dates import describe_deadlines, set_due
+    from grader.storage.due_dates import (
+        describe_deadlines,
+        describe_early_solutions,
+        set_due,
+    )
 
     if asked.student and not asked.assignment:
         raise CourseError(
@@ -85,7 +89,11 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
             )
         when = None if asked.when == NO_DATE else asked.when
         set_due(course, asked.assignment, when, student_id=asked.student)
-    for line in (*describe_deadlines(course), *extended_for_nobody(course)):
+    for line in (
+        *describe_deadlines(course),
+        *extended_for_nobody(course),
+        *describe_early_solutions(course),
+    ):
         print(line)
     # each of these verbs applies the new date, without running any submission again
     if asked.assignment and any(course.folder('submitted', '', '').glob(f'*/{asked.assignment}')):

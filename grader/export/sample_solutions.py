@@ -3,7 +3,6 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
@@ -18,6 +17,7 @@ from grader.common.errors import CourseError
 from grader.common.files import write_whole
 from grader.course import Course
 from grader.storage.deadlines import Deadlines, deadlines
+from grader.storage.due_dates import in_local_time, open_until
 from grader.storage.pipeline import apply_preprocessors, resources_of
 
 PASSES = (
@@ -71,19 +71,18 @@ def write_solutions(
         raise CourseError(
             f'no solution was written: {"; ".join(open_ones.values())}. --early writes it anyway'
         )
-    folder = course.gradebook / 'solutions'
-    folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for assignment, source in sources.items():
         if assignment in open_ones:
             continue
         solved = apply_preprocessors(PASSES, source, resources_of(course, assignment))
         keep_outputs(solved, last_release(course, assignment), sanitizer_of(course))
-        paths.append(folder / f'{assignment}.ipynb')
+        paths.append(course.solution_path(assignment))
+        paths[-1].parent.mkdir(parents=True, exist_ok=True)
         write_whole(paths[-1], nbformat.writes(solved) + '\n')
         for package in course.packages(assignment):  # the notebook looks for it beside itself
             place = course.source_path(assignment).parent / package
-            package_files.write(package_files.read(place).taken, folder / package)
+            package_files.write(package_files.read(place).taken, paths[-1].parent / package)
     return SampleSolutions(tuple(paths), tuple(open_ones.values()))
 
 
@@ -94,16 +93,16 @@ def _find_open(course: Course, assignments: Sequence[str], *, are_named: bool) -
     it `are_named`.
     """
     found = deadlines(course.gradebook, course.assignments()) or Deadlines()
-    now = datetime.now(UTC).replace(tzinfo=None)
     open_ones = {}
     for assignment in assignments:
-        extended = [until for (name, _), until in found.extended.items() if name == assignment]
-        if assignment not in found.due:
-            if found.due and not are_named:
-                open_ones[assignment] = f'{assignment} has no due date (./course due)'
-        elif (last := max([*extended, found.due[assignment]])) > now:
-            until = last.replace(tzinfo=UTC).astimezone()
-            open_ones[assignment] = (
-                f'{assignment} can be handed in until {until:%Y-%m-%d %H:%M %Z}'
+        if until := open_until(found, assignment):
+            open_ones[assignment] = f'{assignment} can be handed in until {in_local_time(until)}'
+        elif assignment not in found.due and found.due and not are_named:
+            open_ones[assignment] = f'{assignment} has no due date (./course due)'
+    for assignment in open_ones:
+        if course.solution_path(assignment).exists():
+            open_ones[assignment] += (
+                ', but gradebook/solutions/ has its answers from before: unless students have '
+                'them already, remove them'
             )
     return open_ones

@@ -42,10 +42,10 @@ def describe_deadlines(course: Course) -> Iterator[str]:
     found = deadlines(course.gradebook, course.assignments()) or Deadlines()
     for assignment in course.assignments():
         due = found.due.get(assignment)
-        yield f'{assignment}  {"due " + _in_local_time(due) if due else "no due date"}'
+        yield f'{assignment}  {"due " + in_local_time(due) if due else "no due date"}'
         for (extended, student), until in sorted(found.extended.items()):
             if extended == assignment:
-                yield f'  extended for {printable(student)} until {_in_local_time(until)}'
+                yield f'  extended for {printable(student)} until {in_local_time(until)}'
     if found.per_day:
         yield (
             f'Each day late costs {found.per_day:.0%} of the score, {found.at_most:.0%} at most; '
@@ -56,6 +56,29 @@ def describe_deadlines(course: Course) -> Iterator[str]:
             f'Lateness costs nothing: [late] in {FILE} can change that '
             '(docs/for-instructors.md, Due dates)'
         )
+
+
+def describe_early_solutions(course: Course) -> Iterator[str]:
+    """Yield a line for each lesson that somebody may still hand in, and whose answers are written.
+
+    For example, its due date was moved after that.
+    """
+    found = deadlines(course.gradebook, course.assignments()) or Deadlines()
+    for assignment in course.assignments():
+        until = open_until(found, assignment)
+        if until and (path := course.solution_path(assignment)).exists():
+            yield (
+                f'{path.relative_to(course.gradebook.parent)} has our answers, and {assignment} '
+                f'can be handed in until {in_local_time(until)}: unless students have it '
+                'already, remove it. ./course solutions writes it again after that'
+            )
+
+
+def open_until(found: Deadlines, assignment: str) -> datetime | None:
+    """Return until when somebody may hand in, in UTC; None if that is over or has no end."""
+    extended = [until for (name, _), until in found.extended.items() if name == assignment]
+    last = max([*extended, found.due[assignment]]) if assignment in found.due else None
+    return last if last and last > datetime.now(UTC).replace(tzinfo=None) else None
 
 
 def _refuse_pointless(
@@ -77,8 +100,8 @@ def _refuse_pointless(
         )
     if when.astimezone(UTC).replace(tzinfo=None) <= due:
         raise CourseError(
-            f'an extension until {_in_local_time(when)} gives nobody more time: {assignment} is '
-            f'due {_in_local_time(due)}'
+            f'an extension until {in_local_time(when)} gives nobody more time: {assignment} is '
+            f'due {in_local_time(due)}'
         )
 
 
@@ -101,7 +124,7 @@ def _put(
             del outer[name]
 
 
-def _in_local_time(when: datetime) -> str:
+def in_local_time(when: datetime) -> str:
     """Show a time in this machine's zone; without a zone it is UTC."""
     when = when if when.tzinfo else when.replace(tzinfo=UTC)
     return f'{when.astimezone():%Y-%m-%d %H:%M %Z}'
