@@ -64,9 +64,13 @@ UPLOADS = {
 @pytest.mark.parametrize('upload', UPLOADS.values(), ids=UPLOADS)
 def test_an_upload_under_another_students_name_is_left_to_a_person(upload, at):
     for own in ('ada', 'Ada', 'my homework', 'lab 3', '02_joint_state'):
-        (taken,), left = match([at(upload.format(own))], ASSIGNMENTS, students=['bob'])
+        (taken,), left = match(
+            [at(upload.format(own))], ASSIGNMENTS, students=['bob'], file_times=True
+        )
         assert (taken.student_id, taken.remark, left) == ('ada', '', [])
-    (taken,), left = match([at(upload.format('turtle'))], ASSIGNMENTS, students=['bob'])
+    (taken,), left = match(
+        [at(upload.format('turtle'))], ASSIGNMENTS, students=['bob'], file_times=True
+    )
     assert (taken.remark, left) == ("from a folder of their own, 'turtle'", [])
     for others in ('bob', 'eve_02_joint_state'):
         taken, (left,) = match([at(upload.format(others))], ASSIGNMENTS, students=['bob'])

@@ -25,6 +25,37 @@ def test_the_time_of_a_submission_is_from_the_exchange_or_the_file(at):
     assert time_of(*exchanged) == ('02-03 04:05:06', ['it holds no date'])
 
 
+LATE = 'has marked it as late, but no time is known, so it counts as in time: if the files'
+
+
+@pytest.mark.parametrize(
+    ('path', 'platform'),
+    [
+        ('ada_LATE_18151_21012_02_joint_state.ipynb', 'Canvas'),
+        ('Lovelace_Ada_ada_4711/Late Submission - 02_joint_state.ipynb', 'Ilias'),
+        ('Lovelace_Ada_ada_4711/Late Submission - homework.zip/02_joint_state.ipynb', 'Ilias'),
+    ],
+)
+def test_a_platform_s_mark_of_lateness_without_a_time_is_reported(path, platform, at):
+    (taken,), left = match([at(path)], ASSIGNMENTS)
+    assert (taken.remark.startswith(f'{platform} {LATE}'), left) == (True, [])
+    (taken,), _ = match([at(path)], ASSIGNMENTS, file_times=True)
+    assert taken.remark == ''
+
+
+@pytest.mark.parametrize(
+    'path',
+    [
+        'ada_18151_21012_LATE_02_joint_state.ipynb',
+        'Lovelace_Ada_ada_4711/homework.zip/Late Submission - 02_joint_state.ipynb',
+        f'{ADA}/Late Submission - 02_joint_state.ipynb',
+    ],
+)
+def test_a_mark_of_lateness_that_a_student_wrote_says_nothing(path, at):
+    for taken in match([at(path)], ASSIGNMENTS)[0]:
+        assert taken.remark == ''
+
+
 def test_a_timestamp_in_an_archive_of_a_student_is_not_used(at):
     notebook, stamp = at('ada.zip/02_joint_state.ipynb'), at('ada.zip/timestamp.txt', '2020-01-01')
     assert time_of(notebook, stamp) == (

@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.collect.companions import Companions, find_companions
 from grader.collect.incoming import Incoming, is_notebook
 from grader.collect.naming import Owner
-from grader.collect.owners import find_owners
+from grader.collect.owners import find_owners, late_remark
 from grader.collect.package_folders import (
     NO_NOTEBOOK,
     group_by_key,
@@ -83,15 +83,17 @@ def match(
             asked_for=asked_for.get(owner.assignment, ()),
             packages=beside_notebooks,
         )
+        handed_in = _submission_time(notebook, owner, with_it, file_times=file_times)
+        late = '' if handed_in else late_remark(notebook, owner)
         hand_ins.append(
             MatchedFile(
                 student_id=owner.student_id,
                 assignment=owner.assignment,
                 notebook=notebook,
                 extra=with_it.extra_files(),
-                handed_in=_submission_time(notebook, owner, with_it, file_times=file_times),
+                handed_in=handed_in,
                 label=owner.label,
-                remark=remarks[notebook],
+                remark='; '.join(filter(None, (late, remarks[notebook]))),
                 secret=with_it.secret.readable if with_it.secret else None,
                 left_out=with_it.left_out(),
             )

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from grader.collect.claims import Claims
 from grader.collect.incoming import Incoming, is_notebook
+from grader.collect.name_forms import strip_late_mark
 from grader.collect.naming import Naming, Owner
 from grader.common.student_names import UnclearOwner, spellings
 
@@ -53,6 +54,20 @@ def foreign_file_reason(each: Incoming, student: str) -> str:
     if each.login in ('', student):
         return ''
     return f'it is beside the notebook of {student}, and the user {each.login} put it there'
+
+
+def late_remark(each: Incoming, owner: Owner) -> str:
+    """Return a remark if a platform has marked it as late, in a name that it wrote itself."""
+    if (label := owner.label) is None:
+        return ''
+    below = ''.join(each.parts[len(owner.above) + 1 :][:1])
+    is_marked = label.platform.marks_late_files and strip_late_mark(below) != below
+    if label.is_late or is_marked:
+        return (
+            f'{label.platform.name.capitalize()} has marked it as late, but no time is known, so '
+            "it counts as in time: if the files' times are right, collect it with --file-times"
+        )
+    return ''
 
 
 def _require_same_user(each: Incoming, owner: Owner) -> Owner:

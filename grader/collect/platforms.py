@@ -17,7 +17,8 @@ class Platform:
     """Its key in gradebook/numbers.json: 'moodle'."""
     form: re.Pattern[str]
     """What it writes before the name of a file, or as a folder's name. Its groups are `student`,
-    `number`, `rest` (what the student called the file; none in a folder's name), perhaps `time`.
+    `number`, `rest` (what the student called the file; none in a folder's name), perhaps `time`
+    and `late` (its mark of a late submission).
     """
     number_of: Literal['student', 'assignment', 'download']
     """Whether a student has one number, or one for each assignment; 'download': the number only
@@ -30,6 +31,8 @@ class Platform:
     """Whether an upload can be collected by itself: nothing else has a name of this form."""
     may_be_class: bool = False
     """Whether a teacher's folder may happen to have a name of its form, that of a class."""
+    marks_late_files: bool = False
+    """Whether it marks a file in such a folder that is handed in late."""
 
 
 # Each form matches as little as possible before `rest`, which the student chose.
@@ -45,7 +48,8 @@ PLATFORMS = (
     Platform(
         name='canvas',
         form=re.compile(
-            r'(?P<student>[^_]+)(_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})_(?P<rest>.+)', re.I
+            r'(?P<student>[^_]+)(?P<late>_LATE)?_(?P<number>\d{3,})_(?P<upload>\d{3,})_(?P<rest>.+)',
+            re.I,
         ),
         number_of='student',
         numbers_copies=True,
@@ -70,6 +74,7 @@ PLATFORMS = (
         ),
         number_of='student',
         may_be_class=True,
+        marks_late_files=True,
     ),
 )
 _ANONYMOUS = {'Participant', 'Teilnehmer', 'Teilnehmerin'}
@@ -87,6 +92,8 @@ class PlatformLabel:
     """The student's name for the file; '' in a folder's name."""
     handed_in: datetime | None = None
     """In UTC; None if the name contains no time."""
+    is_late: bool = False
+    """Whether the platform has marked the submission as late in this name."""
 
 
 def label_in(name: str) -> PlatformLabel | None:
@@ -106,7 +113,14 @@ def label_in(name: str) -> PlatformLabel | None:
     _, place, match = min(found, key=lambda each: each[:2])
     platform, student, number = PLATFORMS[place], match['student'], match['number']
     student = f'{student} {number}' if student in _ANONYMOUS else student
-    return PlatformLabel(platform, number, student, match['rest'] or '', _time(platform, match))
+    return PlatformLabel(
+        platform,
+        number,
+        student,
+        match['rest'] or '',
+        _time(platform, match),
+        is_late=bool(match.groupdict().get('late')),
+    )
 
 
 def student_in(name: str) -> str:
