@@ -106,6 +106,9 @@ def test_an_open_lesson_is_written_only_early_and_an_undated_one_by_name(
     assert main(['solutions', '--early'], course=course) == 0
     assert len(list(solutions.iterdir())) == 4
     assert 'Not written' not in capsys.readouterr().out
+    assert main(['solutions'], course=course) == 0
+    said = 'has answers from before, for 01_open, 02_extended, 03_undated: unless students have '
+    assert said in capsys.readouterr().out
 
 
 @pytest.mark.parametrize('extension', [{}, {'student_id': 'ada'}])
@@ -120,7 +123,7 @@ def test_answers_of_a_lesson_that_is_open_again_are_named_and_stay(course, capsy
     said = f'gradebook/solutions/{TOY}.ipynb has our answers, and {TOY} can be handed in until '
     assert said in capsys.readouterr().out
     assert main(['solutions'], course=course) == 1
-    said = 'gradebook/solutions/ has its answers from before: unless students have them already, '
+    said = f'gradebook/solutions/ has answers from before, for {TOY}: unless students have them '
     assert said in capsys.readouterr().err
     assert path.read_bytes() == before
     path.unlink()

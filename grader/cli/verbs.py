@@ -141,6 +141,8 @@ def run_solutions(course: 'Course', asked: argparse.Namespace) -> int:
     if written.left_out:
         print('Not written, because students may still submit:')
         print(*(f'  {line}' for line in written.left_out), sep='\n')
+        if written.early:
+            print(written.early)
         print('Next, when they are closed: ./course solutions. With --early, all are written now.')
     return 0
 

@@ -1,7 +1,7 @@
 """Make the notebooks for after the deadline: with answers, without hidden tests."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,6 +53,8 @@ class SampleSolutions:
     """The notebooks that were written."""
     left_out: tuple[str, ...]
     """For each lesson without a solution, its name and the reason."""
+    early: str = ''
+    """A sentence on solutions of such lessons that were written before, or ''."""
 
 
 def write_solutions(
@@ -67,9 +69,11 @@ def write_solutions(
     wanted = assignments or course.assignments()
     sources = {assignment: course.source(assignment) for assignment in wanted}
     open_ones = {} if early else _find_open(course, wanted, are_named=bool(assignments))
+    early_ones = _describe_early(course, open_ones)
     if open_ones and (assignments or len(open_ones) == len(sources)):
+        reasons = '; '.join(open_ones.values())
         raise CourseError(
-            f'no solution was written: {"; ".join(open_ones.values())}. --early writes it anyway'
+            f'no solution was written: {reasons}. --early writes it anyway. {early_ones}'.rstrip()
         )
     paths = []
     for assignment, source in sources.items():
@@ -83,7 +87,7 @@ def write_solutions(
         for package in course.packages(assignment):  # the notebook looks for it beside itself
             place = course.source_path(assignment).parent / package
             package_files.write(package_files.read(place).taken, paths[-1].parent / package)
-    return SampleSolutions(tuple(paths), tuple(open_ones.values()))
+    return SampleSolutions(tuple(paths), tuple(open_ones.values()), early_ones)
 
 
 def _find_open(course: Course, assignments: Sequence[str], *, are_named: bool) -> dict[str, str]:
@@ -99,10 +103,15 @@ def _find_open(course: Course, assignments: Sequence[str], *, are_named: bool) -
             open_ones[assignment] = f'{assignment} can be handed in until {in_local_time(until)}'
         elif assignment not in found.due and found.due and not are_named:
             open_ones[assignment] = f'{assignment} has no due date (./course due)'
-    for assignment in open_ones:
-        if course.solution_path(assignment).exists():
-            open_ones[assignment] += (
-                ', but gradebook/solutions/ has its answers from before: unless students have '
-                'them already, remove them'
-            )
     return open_ones
+
+
+def _describe_early(course: Course, open_ones: Iterable[str]) -> str:
+    """Return a sentence on answers of open lessons that were written before, or ''."""
+    names = [name for name in open_ones if course.solution_path(name).exists()]
+    if not names:
+        return ''
+    return (
+        f'gradebook/solutions/ has answers from before, for {", ".join(names)}: unless students '
+        'have them already, remove them.'
+    )
