@@ -41,6 +41,16 @@ def test_collect_prints_rows_of_files_and_exits_with_1_if_one_was_not_taken(
     assert out.splitlines()[-2:] == ['1 there already; 1 not taken.', 'Next: ./course grade']
 
 
+def test_the_next_step_is_printed_only_if_something_was_taken(course, came_in, capsys):
+    for number, status, last in ((1, 0, 'Next: ./course grade'), (2, 1, None)):
+        folder = came_in / str(number)
+        write(folder / f'Ada_{number}_assignsubmission_file_/{TOY}.ipynb', '')
+        assert main(['collect', str(folder)], course=course) == status
+        assert capsys.readouterr().out.splitlines()[-1] == (
+            last or 'Nothing was taken; 1 not taken.'
+        )
+
+
 def test_a_time_that_was_not_known_before_is_added_and_a_known_one_stays(course, came_in, capsys):
     paper = came_in / f'ada_{TOY}.ipynb'
     write(paper, 'x')

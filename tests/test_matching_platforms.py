@@ -331,3 +331,40 @@ def test_the_reason_for_two_names_in_a_moodle_upload_names_the_uploader(at):
     taken, [(_, reason)] = owners(at(path))
     assert taken == []
     assert reason.endswith("rename it if it is Mallory's, or else collect it by itself")
+
+
+BOBS = 'Bob_7_assignsubmission_file_/02_joint_state.ipynb'
+
+
+@pytest.mark.parametrize(
+    'path',
+    [
+        f'{ADA}/answer.pdf',
+        f'{ADA}/helper.py',
+        'Ada Lovelace_1815_assignsubmission_onlinetext_/onlinetext.html',
+        'Ada Lovelace_LATE_18151_21012_Untitled.docx',
+        'Ada Lovelace+02_joint_state+2026-01-01 10:00:00 UTC/timestamp.txt',
+    ],
+)
+def test_a_student_who_handed_in_no_notebook_is_named(path, at):
+    (_,), [left] = match([at(BOBS), at(path)], ASSIGNMENTS)
+    assert left.reason.startswith('there is no notebook in what Ada Lovelace handed in: ask for ')
+    assert left.needs_attention
+    _, [left] = match([at(BOBS), at(path)], ASSIGNMENTS, is_all=False)
+    assert 'handed in' not in left.reason
+
+
+@pytest.mark.parametrize(
+    ('beside', 'problem'),
+    [
+        (f'{ADA}/02_joint_state.ipynb', ''),
+        (f'{ADA}/Untitled.ipynb', ''),
+        (f'{ADA}/work.zip', 'broken'),
+    ],
+)
+def test_other_files_beside_a_notebook_or_beside_what_can_not_be_read_need_no_attention(
+    beside, problem, at
+):
+    text = 'Ada Lovelace_1815_assignsubmission_onlinetext_/onlinetext.html'
+    _, left = match([at(beside, problem=problem), at(text)], ASSIGNMENTS)
+    assert [each.needs_attention for each in left if each.incoming.path == text] == [False]

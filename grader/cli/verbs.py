@@ -62,7 +62,7 @@ def run_collect(course: 'Course', asked: argparse.Namespace) -> int:
     rows = list(collect(course, asked.source, file_times=asked.file_times))
     for line in table_lines(rows, asked.source):
         print(line)
-    taken = any(row.student_id for row in rows)
+    taken = any(row.student_id and row.outcome != LEFT for row in rows)
     if taken:
         print('Next: ./course grade')
     return 0 if taken and not any(row.outcome == LEFT for row in rows) else 1

@@ -50,12 +50,13 @@ def match(
     packages: Mapping[str, Iterable[str]] | None = None,
     students: Iterable[str] = (),
     file_times: bool = False,
+    is_all: bool = True,
 ) -> tuple[list[MatchedFile], list[UntakenFile]]:
     """Split what came in into submissions, sorted by time for each student, and untaken files.
 
     `packages` are the ROS packages that are handed in with each assignment, `students` those who
     are known already. If nothing else says when a file was handed in, `file_times` uses its
-    modification time.
+    modification time. If `found` `is_all` that came in, students without a notebook are named.
     """
     asked_for = {name: tuple(several) for name, several in (packages or {}).items()}
     found, folders = split_packages(
@@ -72,7 +73,8 @@ def match(
             unwanted.append(each)
     owners, remarks, problems = find_owners(found, assignments, students)
     rest += [UntakenFile(each, problem) for each, problem in problems.items()]
-    reasons = UntakenReasons(owners, assignments)
+    unread = (each for each in found if each.problem)
+    reasons = UntakenReasons(owners, assignments, (*problems, *unread), is_all=is_all)
     rest += map(reasons.unwanted, unwanted)
     hand_ins, used, others = [], set[Incoming](), dict[Incoming, str]()
     for notebook, owner in owners.items():

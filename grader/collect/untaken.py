@@ -28,9 +28,21 @@ class UntakenFile:
 class UntakenReasons:
     """Says why files are not taken, beside the notebooks that are."""
 
-    def __init__(self, owners: Mapping[Incoming, Owner], assignments: Iterable[str]) -> None:
-        """Look at each notebook and its owner."""
+    def __init__(
+        self,
+        owners: Mapping[Incoming, Owner],
+        assignments: Iterable[str],
+        others: Iterable[Incoming] = (),
+        *,
+        is_all: bool = True,
+    ) -> None:
+        """Look at each notebook and its owner; `others` may be notebooks, and have no owner.
+
+        Unless that `is_all` that came in, a student's notebook may come in another entry.
+        """
+        self._is_all = is_all
         self._forms = NameForms(assignments)
+        self._with_notebook = {self._find_upload(each) for each in (*owners, *others)}
         self._folders = {
             (owner.assignment, notebook.parts[: len(owner.above) + 1])
             for notebook, owner in owners.items()
@@ -43,14 +55,14 @@ class UntakenReasons:
 
     def unwanted(self, each: Incoming) -> UntakenFile:
         """Return why a file is not taken that is neither a notebook nor Python."""
-        return self._lesson_alone(each) or UntakenFile(
+        return self._find_reason_to_ask(each) or UntakenFile(
             each, 'neither a notebook nor Python', needs_attention=False
         )
 
     def unused(self, each: Incoming, *, in_upload: bool) -> UntakenFile:
         """Return why a file that could be beside a notebook does not belong to any of them."""
-        if alone := self._lesson_alone(each):
-            return alone
+        if to_ask := self._find_reason_to_ask(each):
+            return to_ask
         if each.parts[-1] == SECRET:
             return UntakenFile(
                 each,
@@ -71,6 +83,32 @@ class UntakenReasons:
         if date_of(each.readable) is None:
             return UntakenFile(each, 'it holds no date')
         return UntakenFile(each, 'it is beside no notebook of one student')
+
+    def _find_reason_to_ask(self, each: Incoming) -> UntakenFile | None:
+        """Return the reason for a file if its student may have handed in no notebook at all."""
+        if alone := self._lesson_alone(each):
+            return alone
+        upload = self._find_upload(each) if self._is_all else None
+        if upload is None or upload in self._with_notebook:
+            return None
+        _, student, _ = upload
+        return UntakenFile(
+            each,
+            f'there is no notebook in what {student} handed in: ask for it (in JupyterLab: File, '
+            'Download)',
+        )
+
+    def _find_upload(self, each: Incoming) -> tuple[tuple[str, ...], str, str] | None:
+        """Return where the upload is that a file is in, its student and number; None if in none.
+
+        Only names by platforms and the exchange say that something is all of a student's upload.
+        """
+        for at, name in enumerate(each.parts):
+            if label := label_in(name):
+                return each.parts[:at], label.student, label.number
+            if exchanged := self._forms.parse_exchange_name(name):
+                return each.parts[: at + 1], exchanged.student, ''
+        return None
 
     def _lesson_alone(self, each: Incoming) -> UntakenFile | None:
         """Return the reason for a lesson in another format, without a notebook of its student."""

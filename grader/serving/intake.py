@@ -45,6 +45,7 @@ def take_in(course: Course, queue: Queue, inbound: Path, entry: Entry) -> list[A
             packages,
             packages=packages,
             students={*known_students(course), *(each.student_id for each in waiting)},
+            is_all=False,
         )
         with gradebook_lock(course.gradebook):
             problems = StudentNumbers(course).check_and_store(hand_ins)
