@@ -92,7 +92,8 @@ def test_a_missing_or_empty_folder_to_collect_is_reported(course, tmp_path, caps
     (tmp_path / 'empty').mkdir()
     assert main(['collect', str(tmp_path / 'empty')], course=course) == 1
     assert capsys.readouterr().out == (
-        f'Nothing was taken: there is no file in {tmp_path / "empty"}\n'
+        f'Nothing was taken: there is no file in {tmp_path / "empty"}. Expected what '
+        'students handed in: name another folder or archive, or download it again\n'
     )
 
 

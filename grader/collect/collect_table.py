@@ -21,7 +21,10 @@ def table_lines(rows: Iterable[FileOutcome], source: Path) -> Iterator[str]:
     """Yield the lines of the report: what was taken, what was not and why, and how many."""
     rows = list(rows)
     if not rows:
-        yield f'Nothing was taken: there is no file in {printable(str(source))}'
+        yield (
+            f'Nothing was taken: there is no file in {printable(str(source))}. Expected what '
+            'students handed in: name another folder or archive, or download it again'
+        )
         return
     taken = [row for row in rows if row.student_id and row.outcome != LEFT]
     parts = [[*_table(('student', 'assignment', 'handed in (UTC)', ''), map(_taken, taken))]]
