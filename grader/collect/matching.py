@@ -150,7 +150,10 @@ def _sort_hand_ins(hand_ins: list[MatchedFile], rest: list[UntakenFile]) -> list
             ]
             continue
         others = f'one of {len(several)} notebooks for {assignment} by {student}'
-        reason = f'{others}, and nothing shows which is the latest'
+        reason = (
+            f'{others}, and nothing shows which is the latest: collect a folder with only the one '
+            "to grade, or use --file-times if the files' times are right"
+        )
         rest += [UntakenFile(each.notebook, reason) for each in several]
     return ordered
 
