@@ -23,6 +23,7 @@ from grader.storage.pipeline import sanitize_template
 from grader.storage.registering import register
 from grader.storage.reuse import (
     conditions_digest,
+    files_digest,
     find_earlier_result,
     key_of,
     refresh_late_penalty,
@@ -144,7 +145,8 @@ class Grading:
             seed=its_seed,
             trust_students=self.trust_students,
         )
-        return then(judged, lambda result: _graded(submission, files, result, key))
+        digest = files_digest(submission)
+        return then(judged, lambda result: _graded(submission, files, result, key, digest))
 
     def _earlier(self, submission: Submission, key: str) -> NotebookNode | None:
         return None if self.force else find_earlier_result(self.course, submission, key)
@@ -185,7 +187,7 @@ class Grading:
 
 
 def _graded(
-    submission: Submission, files: Mapping[str, bytes], result: Result, key: str
+    submission: Submission, files: Mapping[str, bytes], result: Result, key: str, digest: str
 ) -> GradedSubmission:
-    write_key(result.notebook, key)
+    write_key(result.notebook, key, digest)
     return GradedSubmission(submission, result.notebook, files, seconds=result.seconds)

@@ -15,6 +15,10 @@ from grader.passback.write import write_feedback_archives, write_platform_scores
 from grader.storage.database import has_database, open_database, wait_until_free
 from grader.storage.failures import gone_message
 from grader.storage.registering import withdrawn
+from grader.storage.ungraded import ungraded
+
+MOST_NAMED = 10
+"""How many submissions that are not graded yet are named."""
 
 
 def run_scores(course: Course, asked: argparse.Namespace) -> int:
@@ -27,7 +31,9 @@ def run_scores(course: Course, asked: argparse.Namespace) -> int:
         )
     _wait_for_database(course)
     if asked.send:
-        return _send_scores(course, asked.assignment)
+        status = _send_scores(course, asked.assignment)
+        _say_what_comes_first(course)
+        return status
     if asked.format:
         paths = write_platform_scores(
             course, asked.format, asked.assignment, asked.roster, _say_line
@@ -101,5 +107,16 @@ def _is_graded(course: Course) -> bool:
 
 
 def _say_what_comes_first(course: Course) -> None:
+    """Print what is to be graded first: without that, what is handed back is not up to date."""
     if not _is_graded(course):
         print('Nothing is graded yet. Next: ./course grade', file=sys.stderr)
+    elif found := ungraded(course):
+        named = [f'{each.student_id} {each.assignment}' for each in found[:MOST_NAMED]]
+        if more := len(found) - len(named):
+            named.append(f'{more} more')
+        print(
+            'New or changed, and not graded yet: '
+            f'{printable(", ".join(named))}. What was written has an earlier result of these, or '
+            'none. Next: ./course grade, then this again',
+            file=sys.stderr,
+        )

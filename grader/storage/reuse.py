@@ -21,7 +21,7 @@ from grader.storage.pipeline import apply_preprocessors, first_reason, resources
 
 LATE = ('grader.storage.late_penalties.LatePenalties',)
 """The penalty is computed again: a due date may have moved, and results don't depend on it."""
-_UNDER = 'graded_under'
+_UNDER, _FILES = 'graded_under', 'graded_files'
 
 
 def conditions_digest(course: Course, assignment: str, *, isolated: bool) -> str:
@@ -35,24 +35,40 @@ def conditions_digest(course: Course, assignment: str, *, isolated: bool) -> str
 
 def key_of(submission: Submission, given: str, *, seed: str) -> str:
     """Return a hash of a submission's files, its seed, and the conditions of its assignment."""
-    files = {TIMESTAMP: submission.path.with_name(TIMESTAMP)} | submission.files
-    if submission.problem is None:
-        files[submission.path.name] = submission.path
     parts = [given, seed, submission.assignment, submission.problem or '', *submission.notes]
-    parts += [f'{name} {_digest(_content(path))}' for name, path in files.items()]
+    parts += _digests(submission, with_notebook=submission.problem is None)
     return _digest(json.dumps(parts).encode())
 
 
-def write_key(graded: NotebookNode, key: str) -> None:
-    """Write the key into a graded notebook; it is stored with the result."""
-    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []}))[_UNDER] = key
+def files_digest(submission: Submission) -> str:
+    """Return a hash of a submission's files alone, also if its notebook can't be read."""
+    return _digest(json.dumps(_digests(submission, with_notebook=True)).encode())
+
+
+def write_key(graded: NotebookNode, key: str, files: str) -> None:
+    """Write the key and the hash of the files into a graded notebook; it is stored with both."""
+    graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).update(
+        {_UNDER: key, _FILES: files}
+    )
+
+
+def is_of_other_files(course: Course, submission: Submission) -> bool:
+    """Whether the stored result is of other files than the submission has now, or damaged.
+
+    A result that nbgrader's own commands have stored does not say of which files it is.
+    """
+    try:
+        stored = parse_own_notebook(_graded_path(course, submission).read_text(encoding='utf-8'))
+    except (OSError, ValueError):
+        return True
+    said = stored.metadata.get(KEY, {}).get(_FILES)
+    return said is not None and said != files_digest(submission)
 
 
 def find_earlier_result(course: Course, submission: Submission, key: str) -> NotebookNode | None:
     """Return the graded notebook that is stored under a key, if each of its checks has a score."""
-    folder = course.folder('autograded', submission.student_id, submission.assignment)
     try:
-        text = (folder / f'{submission.assignment}.ipynb').read_text(encoding='utf-8')
+        text = _graded_path(course, submission).read_text(encoding='utf-8')
         notebook = parse_own_notebook(text) if key in text else None
     except (OSError, ValueError):
         return None  # not there yet, or damaged: it is graded again
@@ -112,6 +128,18 @@ def _checks(notebook: NotebookNode) -> list[NotebookNode]:
 def _cells_without_outputs(notebook: NotebookNode) -> list:
     """Return the cells of a lesson, without their outputs."""
     return [(c.cell_type, c.source, c.get('id'), c.metadata) for c in notebook.cells]
+
+
+def _graded_path(course: Course, submission: Submission) -> Path:
+    folder = course.folder('autograded', submission.student_id, submission.assignment)
+    return folder / f'{submission.assignment}.ipynb'
+
+
+def _digests(submission: Submission, *, with_notebook: bool) -> list[str]:
+    files = {TIMESTAMP: submission.path.with_name(TIMESTAMP)} | submission.files
+    if with_notebook:
+        files[submission.path.name] = submission.path
+    return [f'{name} {_digest(_content(path))}' for name, path in files.items()]
 
 
 def _content(path: Path) -> bytes:

@@ -1,0 +1,43 @@
+"""Submissions that wait to be graded: what is handed back has an earlier result, or none."""
+
+import os
+from pathlib import Path
+
+from grader.common.errors import CourseError
+from grader.course import Course
+from grader.notebook.submission import unread_submission
+from grader.storage.reuse import is_of_other_files
+from grader.storage.submitted import SubmissionFolder, find_submissions, is_new
+
+
+def ungraded(course: Course) -> list[SubmissionFolder]:
+    """Return the submissions that are new, or have changed since they were graded."""
+    try:
+        found = find_submissions(course)
+    except CourseError:  # there is none
+        return []
+    return [
+        each
+        for each in found
+        if not each.problem and (is_new(course, each) or _has_changed(course, each))
+    ]
+
+
+def _has_changed(course: Course, found: SubmissionFolder) -> bool:
+    """Whether its files are others; they are read only if one of them is newer than the result."""
+    graded = course.folder('autograded', found.student_id, found.assignment)
+    when = (graded / f'{found.assignment}.ipynb').stat().st_mtime_ns
+    if all(time <= when for time in _times_in(found.folder)):
+        return False
+    submission = unread_submission(
+        found.folder,
+        student_id=found.student_id,
+        assignment=found.assignment,
+        packages=course.packages(found.assignment),
+    )
+    return is_of_other_files(course, submission)
+
+
+def _times_in(folder: Path) -> list[int]:
+    inside = [Path(above, name) for above, _, names in os.walk(folder) for name in names]
+    return [path.lstat().st_mtime_ns for path in inside]
