@@ -37,7 +37,7 @@ import nbformat
 from grader.course import Course
 from grader.kernels.isolation import require_isolation
 from grader.notebook.submission import read_submission
-from grader.storage.reuse import conditions, key_of, remember
+from grader.storage.reuse import conditions_digest, files_digest, key_of, write_key
 from grader.storage.seeds import seeds
 course = Course(gradebook=Path(sys.argv[1]))
 known = {}
@@ -45,14 +45,14 @@ for path in sorted(course.gradebook.glob('autograded/*/*/*.ipynb')):
     student, name = path.parts[-3:-1]
     if name not in known:
         isolated = require_isolation(trust_students=True)
-        known[name] = conditions(course, name, isolated=isolated), seeds(course, name)
+        known[name] = conditions_digest(course, name, isolated=isolated), seeds(course, name)
     given, seed = known[name]
     submission = read_submission(
         course.folder('submitted', student, name), student_id=student, assignment=name,
         packages=course.packages(name),
     )
     graded = nbformat.read(path, as_version=4)
-    remember(graded, key_of(submission, given, seed=seed(submission)))
+    write_key(graded, key_of(submission, given, seed=seed(submission)), files_digest(submission))
     nbformat.write(graded, path)
 """
 
