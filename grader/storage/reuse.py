@@ -53,16 +53,12 @@ def write_key(graded: NotebookNode, key: str, files: str) -> None:
 
 
 def is_of_other_files(course: Course, submission: Submission) -> bool:
-    """Whether the stored result is of other files than the submission has now, or damaged.
-
-    A result that nbgrader's own commands have stored does not say of which files it is.
-    """
+    """Whether the stored result is not known to be of the files that the submission has now."""
     try:
         stored = parse_own_notebook(_graded_path(course, submission).read_text(encoding='utf-8'))
     except (OSError, ValueError):
         return True
-    said = stored.metadata.get(KEY, {}).get(_FILES)
-    return said is not None and said != files_digest(submission)
+    return stored.metadata.get(KEY, {}).get(_FILES) != files_digest(submission)
 
 
 def find_earlier_result(course: Course, submission: Submission, key: str) -> NotebookNode | None:

@@ -24,7 +24,11 @@ def ungraded(course: Course) -> list[SubmissionFolder]:
 
 
 def _has_changed(course: Course, found: SubmissionFolder) -> bool:
-    """Whether its files are others; they are read only if one of them is newer than the result."""
+    """Whether its files are others; they are read only if one of them is newer than the result.
+
+    A newer one may be a copy. A result of nbgrader's own commands does not say of which files it
+    is: ./course grade grades these again.
+    """
     graded = course.folder('autograded', found.student_id, found.assignment)
     when = (graded / f'{found.assignment}.ipynb').stat().st_mtime_ns
     if all(time <= when for time in _times_in(found.folder)):
