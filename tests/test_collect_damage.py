@@ -47,6 +47,23 @@ def test_a_file_in_the_way_of_one_submission_does_not_stop_others(course, came_i
     assert (course.gradebook / 'submitted/ada').read_text() == 'a file'
 
 
+@pytest.mark.parametrize('name', ['bob.zip', 'bob.tar.gz'])
+def test_an_archive_without_a_file_is_listed_beside_other_submissions(course, came_in, name):
+    write(came_in / f'ada_{TOY}.ipynb', '')
+    (came_in / 'empty').mkdir()
+    if name.endswith('.zip'):
+        with zipfile.ZipFile(came_in / name, 'w') as box:
+            box.write(came_in / 'empty', 'work')
+    else:
+        with tarfile.open(came_in / name, 'w:gz') as box:
+            box.add(came_in / 'empty', 'work')
+    said = {row.path: (row.outcome, row.reason) for row in collect(course, came_in)}
+    reason = 'there is no file in it: if work is missing, ask for it once more'
+    assert said == {f'ada_{TOY}.ipynb': (NEW, ''), name: (LEFT, reason)}
+    alone = [(row.path, row.reason) for row in collect(course, came_in / name)]
+    assert alone == [(name, reason)]
+
+
 def test_a_full_disk_is_reported_in_a_sentence(course, came_in, monkeypatch):
     def full(*_):
         raise OSError(28, 'No space left on device')

@@ -60,8 +60,10 @@ def unpack(
     `name` shows the kind of archive. Raises OSError if the disk is full, and nothing else:
     whatever is wrong with the archive is the problem of a member.
     """
+    is_empty = True
     try:
         for entry in read_entries(archive, name=name, aside=aside, left=left):
+            is_empty = False
             left.files -= 1
             if left.files < 0:
                 raise ArchiveRefused('more files in it than are unpacked')
@@ -69,6 +71,10 @@ def unpack(
             if not problem and wanted(entry.parts):
                 file, problem = _copy_aside(entry, aside, left)
             yield Member(entry.parts, entry.modified, file, problem)
+        if is_empty:
+            yield Member(
+                (), problem='there is no file in it: if work is missing, ask for it once more'
+            )
     except ArchiveRefused as refusal:
         yield Member((), problem=f'{refusal}; what comes after that was not read')
     except _BROKEN as error:
