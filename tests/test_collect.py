@@ -11,7 +11,7 @@ from course_maker import TOY, answered, executed
 from nbgrader.coursedir import CourseDirectory
 
 from grader.__main__ import main
-from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED
+from grader.collect.collect import AGAIN, EARLIER, KNOWN, LEFT, NEW, UNUSED, collect
 from grader.notebook.restore import restore
 from grader.notebook.submission import read_submission
 from grader.storage.gradebook import store
@@ -121,6 +121,17 @@ def test_submissions_without_times_count_in_the_order_of_collecting(course, came
     write(came_in / f'ada_{TOY}.ipynb', 'one')
     assert rows(course, came_in) == {f'ada_{TOY}.ipynb': KNOWN}
     assert submitted(course) == {NOTEBOOK: 'two'}
+
+
+def test_an_empty_file_is_named_and_the_submission_before_it_is_kept(course, came_in):
+    write(came_in / f'ada_{TOY}.ipynb', 'work')
+    rows(course, came_in)
+    write(came_in / f'ada_{TOY}.ipynb', '')
+    (row,) = collect(course, came_in)
+    assert row.outcome == AGAIN
+    assert 'are kept in gradebook/submitted_before/ada/' in row.reason
+    assert row.reason.endswith('; its file is empty: get it once more, or ask for it')
+    assert before(course) == {f'1/submitted/{NOTEBOOK}': 'work'}
 
 
 def test_a_former_version_that_is_submitted_again_later_is_graded(course, came_in):

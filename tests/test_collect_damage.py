@@ -49,7 +49,7 @@ def test_a_file_in_the_way_of_one_submission_does_not_stop_others(course, came_i
 
 @pytest.mark.parametrize('name', ['bob.zip', 'bob.tar.gz'])
 def test_an_archive_without_a_file_is_listed_beside_other_submissions(course, came_in, name):
-    write(came_in / f'ada_{TOY}.ipynb', '')
+    write(came_in / f'ada_{TOY}.ipynb', 'x')
     (came_in / 'empty').mkdir()
     if name.endswith('.zip'):
         with zipfile.ZipFile(came_in / name, 'w') as box:

@@ -110,7 +110,7 @@ def test_a_damaged_file_of_numbers_is_reported_in_a_sentence(damage, course, cam
 
 
 def test_a_folder_inside_an_upload_is_mentioned_beside_the_taken_file(course, came_in):
-    uploaded(came_in, 'Ada', 1, '', '/turtles')
+    uploaded(came_in, 'Ada', 1, 'hers', '/turtles')
     (row,) = collect(course, came_in)
     assert (row.outcome, row.reason) == (NEW, "from a folder of their own, 'turtles'")
 

@@ -95,7 +95,7 @@ def match(
                 extra=with_it.extra_files(),
                 handed_in=handed_in,
                 label=owner.label,
-                remark='; '.join(filter(None, (late, remarks[notebook]))),
+                remark='; '.join(filter(None, (_empty_remark(notebook), late, remarks[notebook]))),
                 secret=with_it.secret.readable if with_it.secret else None,
                 left_out=with_it.left_out(),
             )
@@ -114,6 +114,15 @@ def match(
         left = (each for each in files.values() if each not in used and each not in others)
         rest += [reasons.unused(each, in_upload=folder in uploads) for each in left]
     return _sort_hand_ins(hand_ins, rest), rest
+
+
+def _empty_remark(notebook: Incoming) -> str:
+    """Return a remark if a file is empty: perhaps it was not saved, copied or unpacked whole."""
+    try:
+        is_empty = notebook.readable.stat().st_size == 0
+    except OSError:
+        return ''  # it is listed where it is copied
+    return 'its file is empty: get it once more, or ask for it' if is_empty else ''
 
 
 def _submission_time(
