@@ -55,11 +55,9 @@ def _about_character(character: str | None) -> str:
     """Return which character to type in place of this one; None is an invisible one."""
     if character is None:
         return ', so type that line again: it has a space of another kind, as copied text may have'
-    plain = _SIGNS.get(character) or in_ascii(character)
-    if not plain:
-        return ''
-    plain = student_text(repr(plain))
-    return f', so write {plain} in its place'
+    ascii_text = _SIGNS.get(character) or in_ascii(character)
+    plain = student_text(repr(ascii_text)) if ascii_text else ''
+    return f', so write {plain} in its place' if plain else ''
 
 
 def _about_name(name: str, *, is_node: bool) -> str:
