@@ -21,7 +21,7 @@ NAME, NUMBER = 'arm_1', '7'
 """They stand in for values that the code does not show."""
 IS_NUMBER = re.compile(
     r'.*(sec|hz|count|number|length|len|size|points|earned|round|far|abs|deg|rad|ran|most|max|min'
-    r'|code|copies|speed|asked|answered|times|hours).*|x|y|n',
+    r'|exit_code|copies|speed|asked|answered|times|hours).*|x|y|n',
     re.IGNORECASE,
 )
 CODE = re.compile(

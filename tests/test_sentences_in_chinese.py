@@ -35,7 +35,7 @@ WITH_COLONS = {
     "raised AttributeError: no 'send' (line 1, in f: self.send(m)); fix that first": {
         'expected': '来自 /a 的消息原样转发到 /b',
         'seen': '1 s 内没有',
-        'hint': "它的回调抛出了 AttributeError: no 'send' (line 1, in f: self.send(m))；"
+        'hint': "它的回调抛出了 AttributeError: no 'send'（第 1 行，在 f 里：self.send(m)）；"
         '请先改正它',
     },
     'expected rate_hz = 5.0 to be set, saw it refused: Wrong parameter type, expected '
@@ -222,7 +222,7 @@ OF_STUDENTS = {
     ),
     'your cell `a` stopped with SyntaxError: invalid syntax (line 1: if a, b && c:), so write the '
     'words `and`, `or` and `not`': (
-        '你的单元格 `a` 停止了：SyntaxError: invalid syntax (line 1: if a, b && c:)，'
+        '你的单元格 `a` 停止了：SyntaxError: invalid syntax（第 1 行：if a, b && c:），'
         '请写单词 `and`、`or` 和 `not`'
     ),
     'your cell `a` stopped with IndentationError: expected an indented block after function '
@@ -263,12 +263,12 @@ OF_STUDENTS = {
     ),
     "its callback raised AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
     'p.publish(m)), so give `header.stamp` a value of the type `builtin_interfaces/Time`': (
-        "它的回调抛出了 AttributeError: 'float' object has no attribute 'sec' (line 4, in f: "
-        'p.publish(m))，应当给 `header.stamp` 一个 `builtin_interfaces/Time` 类型的值'
+        "它的回调抛出了 AttributeError: 'float' object has no attribute 'sec'（第 4 行，在 f 里："
+        'p.publish(m)），应当给 `header.stamp` 一个 `builtin_interfaces/Time` 类型的值'
     ),
     'its callback raised KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt); fix that '
     'first': (
-        '它的回调抛出了 KeyboardInterrupt (line 9, in f: raise KeyboardInterrupt)；请先改正它'
+        '它的回调抛出了 KeyboardInterrupt（第 9 行，在 f 里：raise KeyboardInterrupt）；请先改正它'
     ),
     'your cell `a` stopped with InvalidNodeNameException: Invalid node name: node name must not '
     "contain characters other than alphanumerics or '_': 'my-node' ^": (
@@ -286,8 +286,8 @@ OF_STUDENTS = {
     "characters other than alphanumerics or '_': 'a b' (line 4, in f: g(x)), so write a name of "
     'letters from a to z, digits and _ alone': (
         '它的回调抛出了 InvalidNodeNameException: Invalid node name: node name must not contain '
-        "characters other than alphanumerics or '_': 'a b' (line 4, in f: g(x))，名称只能用 a 到 "
-        'z 的字母、数字和 _，请改写'
+        "characters other than alphanumerics or '_': 'a b'（第 4 行，在 f 里：g(x)），"
+        '名称只能用 a 到 z 的字母、数字和 _，请改写'
     ),
     "expected a warning in the log of /a, saw 'IK: x=1, y=2': keep both keys": (
         "预期：/a 的日志里有一条警告；实际：'IK: x=1, y=2'。两个键都要保留"
@@ -305,6 +305,63 @@ OF_STUDENTS = {
         '给出方法时只写名字，不加圆括号'
     ),
 }
+
+
+WITH_LINES = {
+    'a thread of the notebook raised ValueError: no (arm.py, line 12, in publish: send(1))': (
+        'notebook 的一个线程抛出了 ValueError: no（arm.py，第 12 行，在 publish 里：send(1)）'
+    ),
+    'it raised an exception a moment ago (KeyError: 0 (line 7, in publish: ENDS[publish(0)])), '
+    'and the goal was aborted': (
+        '它刚才抛出了异常（KeyError: 0（第 7 行，在 publish 里：ENDS[publish(0)]）），'
+        '目标因此被中止'
+    ),
+    'it raised NoPose: no message (line 12, in publish: raise NoPose): no response was sent': (
+        '它抛出了 NoPose: no message（第 12 行，在 publish 里：raise NoPose）：没有发出响应'
+    ),
+    'expected 5.0 Hz, saw none in 3 s: its callback raised ValueError: no (line 12, in '
+    'publish: self.send(JointState(); fix that first': (
+        '预期：5.0 Hz；实际：3 s 内没有。它的回调抛出了 ValueError: no（第 12 行，在 publish 里：'
+        'self.send(JointState(）；请先改正它'
+    ),
+    'it raised an exception a moment ago (KeyError: 0 (line 7, in publish: 2: send([service])), '
+    'and the goal was aborted': (
+        '它刚才抛出了异常（KeyError: 0（第 7 行，在 publish 里：2: send([service]）），'
+        '目标因此被中止'
+    ),
+    "your cell `a` stopped with SyntaxError: '(' was never closed (line 3: publish(x)": (
+        "你的单元格 `a` 停止了：SyntaxError: '(' was never closed（第 3 行：publish(x）"
+    ),
+    "your cell `a` stopped with SyntaxError: unmatched ')' (line 3: publish(x)))": (
+        "你的单元格 `a` 停止了：SyntaxError: unmatched ')'（第 3 行：publish(x))）"
+    ),
+    'your cell `a` stopped with SyntaxError: unterminated string literal (detected at line 3) '
+    "(line 3: node = 'message)": (
+        '你的单元格 `a` 停止了：SyntaxError: unterminated string literal (detected at line 3)'
+        "（第 3 行：node = 'message）"
+    ),
+    'its callback has not returned (line 12, in publish: send(message, service))': (
+        '它的回调还没有返回（第 12 行，在 publish 里：send(message, service)）'
+    ),
+    'its callback has not returned (line 12: publish)': '它的回调还没有返回（第 12 行：publish）',
+    'a callback sleeps in line 4 (sleep(period); publish), and meanwhile the timer cannot call '
+    'anything: leave the sleep out': (
+        '有一个回调在第 4 行睡眠（sleep(period); publish），这期间定时器什么也调用不了：'
+        '请去掉这个睡眠'
+    ),
+    'your cell `a` stopped with AssertionError: line 12: assert publish, message': (
+        '你的单元格 `a` 停止了：AssertionError：第 12 行：assert publish, message'
+    ),
+    '(line 12, in publish: message)': '（第 12 行，在 publish 里：message）',
+    '(line 12, in <module>: publish(service); message.data = 1)': (
+        '（第 12 行，在 <module> 里：publish(service); message.data = 1）'
+    ),
+}
+
+
+@pytest.mark.parametrize(('english', 'chinese'), WITH_LINES.items())
+def test_the_place_of_an_error_is_translated_and_its_function_and_code_are_not(english, chinese):
+    assert in_language('zh_CN', english) == chinese
 
 
 @pytest.mark.parametrize(('english', 'chinese'), OF_STUDENTS.items())

@@ -22,7 +22,7 @@ Texts = dict[str, list[str]]
 
 ONLY_DRAWN = {
     *('arm', 'branches', 'follow', 'goal_view', 'graph_picture', 'qos_offers', 'qos_pictures'),
-    *('queue_picture', 'service_picture', 'stdout_tap', 'target', 'timeline', 'troubles'),
+    *('queue_picture', 'service_picture', 'stdout_tap', 'target', 'timeline'),
 }
 """The modules of `live` whose texts are parts of pictures, and no sentences."""
 MODULES = {

@@ -25,11 +25,11 @@ def text_in(told: Mapping[str, Any], key: str) -> str:
     return text if isinstance(text, str) else ''
 
 
-def describe_exit(code: int | None) -> str:
+def describe_exit(exit_code: int | None) -> str:
     """How a program has ended, according to its exit code."""
-    if code is None:
+    if exit_code is None:
         return 'it runs'
-    return f'exit code {code}' if code >= 0 else f'ended by {signal_name(-code)}'
+    return f'exit code {exit_code}' if exit_code >= 0 else f'ended by {signal_name(-exit_code)}'
 
 
 def describe_end(code: int | None, said: str) -> str:

@@ -153,5 +153,6 @@ def _service_of(work: Work) -> str:
 
 
 def _line(frame: FrameType) -> str:
-    text = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
-    return f'line {frame.f_lineno}: {text}' if text else f'line {frame.f_lineno}'
+    line_number = frame.f_lineno
+    code = linecache.getline(frame.f_code.co_filename, line_number).strip()
+    return f'line {line_number}: {code}' if code else f'line {line_number}'

@@ -4,13 +4,15 @@ import re
 from collections.abc import Mapping
 
 from my_robot_basics.language.spaces import QUOTED
-from my_robot_basics.language.templates import FEW_LETTERS, LETTERS, Template
+from my_robot_basics.language.templates import CODE, FEW_LETTERS, LETTERS, Template
 
 MOST_DROPPED = 5
 """Characters that a translation may leave out, such as the s of a plural."""
 
 _OPENED = re.compile(r'(?<!\w)[\'"](?=\w)')
 """An opening quote; closed quotes are removed before the search."""
+_LINE = re.compile(r'\((\S+, )?line \d+(, in \S+)?: .*?\)(?=$|[,;:] )')
+"""A line of code in brackets: of a longer statement, it may have half of a pair of brackets."""
 _RAISES = re.compile(r'(Error|Exception|Interrupt|Exit):( |$)')
 """The name of an exception: Python's own message follows, with any colons and brackets."""
 
@@ -29,13 +31,16 @@ def is_cut(template: Template, found: Mapping[str, str]) -> bool:
     ):
         return True
     return ended or any(
-        '…' not in text
-        and (
-            any(text.count(one) != text.count(other) for one, other in ('()', '[]', '{}'))
-            or _OPENED.search(text)
-        )
-        for text in said.values()
+        '…' not in text and _cuts(text) and _cuts(QUOTED.sub('', _LINE.sub('', found[place])))
+        for place, text in said.items()
+        if not CODE.fullmatch(place)
     )
+
+
+def _cuts(text: str) -> bool:
+    """Whether a text has only one half of a pair of brackets or quotes."""
+    counts = ((text.count(one), text.count(other)) for one, other in ('()', '[]', '{}'))
+    return any(one != other for one, other in counts) or bool(_OPENED.search(text))
 
 
 def is_exception_cut(

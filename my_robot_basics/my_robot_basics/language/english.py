@@ -4,6 +4,8 @@ import re
 
 from my_robot_basics.language.templates import LETTERS
 
+IN_BRACKETS = '{one} ({other})'
+"""The template of a text with another one behind it, in brackets."""
 PHRASE = 10_000
 """Added to the number of letters if a text has two English words in a row."""
 
@@ -15,10 +17,13 @@ _NAME = re.compile(
 """Names, which are the same in each language, and quoted text."""
 _RAISED = re.compile(
     r'[\w.]*(Error|Exception|Interrupt|Exit)(: .*| \(line .*\))?'
+    r'|[\w.]+(: .*)? \((\S+, )?line \d+, in \S+: .*\)'
     r"|Wrong parameter type, expected '\S+' got '\S+'",
     re.DOTALL,
 )
 """The message of an exception, or of rclpy about a parameter's type: it stays English."""
+_WITH_LINE = re.compile(r'(.+?) \(((?:\S+, )?line \d+(?:, in \S+)?(?:: .*)?)\)', re.DOTALL)
+"""An exception with the line where it was raised, which the course adds in brackets."""
 
 
 def letters_left(text: str) -> int:
@@ -35,3 +40,12 @@ def letters_in_names(text: str) -> float:
 def is_raised(text: str) -> bool:
     """Whether a text is the message of an exception, or of rclpy about a parameter's type."""
     return bool(_RAISED.fullmatch(text))
+
+
+def split_line(raised: str) -> tuple[str, str]:
+    """Split an exception's text from the line where it was raised, such as `line 4, in f: g(x)`.
+
+    The line is '' if there is none.
+    """
+    found = _WITH_LINE.fullmatch(raised)
+    return (found[1], found[2]) if found else (raised, '')

@@ -12,16 +12,23 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from my_robot_basics.language.cuts import is_cut, is_exception_cut, is_open
-from my_robot_basics.language.english import PHRASE, is_raised, letters_in_names, letters_left
+from my_robot_basics.language.english import (
+    IN_BRACKETS,
+    PHRASE,
+    is_raised,
+    letters_in_names,
+    letters_left,
+    split_line,
+)
 from my_robot_basics.language.spaces import remove_spaces
-from my_robot_basics.language.templates import FEW_LETTERS, LETTERS, PLACE, Template
+from my_robot_basics.language.templates import CODE, FEW_LETTERS, LETTERS, PLACE, Template
 
 SENTENCES, SPACED = '{sentence} {other}', '{one} {other}'
 """Two sentences in a row; and any text followed by one that begins like some template."""
 REASON, CLAUSES = 'expected {expected}, saw {seen}: {hint}', '{one}; {other}'
 JOINED: tuple[str, ...] = (SENTENCES, SPACED, CLAUSES, '{one}. {other}')
 JOINED += ('{one}: {other}', '{one}, {other}', '{one} and {other}', '{one} or {other}', '({one})')
-JOINED += ('{one} ({other})',)
+JOINED += (IN_BRACKETS,)
 """Templates that join any two texts, or put one into brackets."""
 MOST_CHARACTERS = 2_000
 """Longer texts are not translated: only a student's output makes a sentence so long."""
@@ -34,7 +41,10 @@ MOST_SPACES = 40
 MOST_SPLITS = 10
 """How many matches of one template with one text are tried."""
 
-_HOW_MANY = re.compile(r'(len|count|code|number|(f_)?lineno|line_number)\d*')
+OF_CODE = 1e-4
+"""What a place with code costs: of two matches, the one with less code is taken."""
+
+_HOW_MANY = re.compile(r'(len|count|exit_code|number|lineno|line_number)\d*')
 """Names of places that only a number, or `…` for a hidden one, may fill: `{len} wrong`."""
 _NUMBER = re.compile(r'[\d,.]+|…')
 
@@ -105,7 +115,7 @@ class Sentences:
         known = self._found.get(text)
         if known is None or (known[0] > deep and known[1][0] > 0):
             raised = is_raised(text)
-            best = (letters_in_names(text) if raised else letters_left(text)), text
+            best = self._raised(text, deep) if raised else (letters_left(text), text)
             if best[0] and not raised and deep < MOST_DEEP:
                 for fitted in self._fitted(text, deep + 1):
                     best = min(best, fitted, key=lambda each: each[0])
@@ -113,6 +123,14 @@ class Sentences:
                         break
             self._found[text] = known = deep, best
         return known[1]
+
+    def _raised(self, text: str, deep: int) -> tuple[float, str]:
+        """Translate the line where an exception was raised, and nothing of what Python says."""
+        said, line = split_line(text)
+        if line:
+            joined = self.translations.get(IN_BRACKETS, IN_BRACKETS)
+            said = joined.format(one=said, other=self._best(line, deep + 1)[1])
+        return letters_in_names(text), said
 
     def _fitted(self, text: str, deep: int) -> Iterator[tuple[float, str]]:
         for template in (*self._first, *self._templates):
@@ -156,11 +174,14 @@ class Sentences:
 
     def _put(self, template: Template, found: Mapping[str, str], deep: int) -> tuple[float, str]:
         """Fill a template's translation; return the letters that stay English, and the text."""
-        best = {
-            name: (0, found[name]) if name in template.quoted else self._best(found[name], deep)
-            for name in template.places
-            if name in template.used
-        }
+        best: dict[str, tuple[float, str]] = {}
+        for name in filter(template.used.__contains__, template.places):
+            if name in template.quoted:
+                best[name] = 0, found[name]
+            elif CODE.fullmatch(name):
+                best[name] = OF_CODE, found[name]
+            else:
+                best[name] = self._best(found[name], deep)
         shown = PLACE.sub(lambda place: best[place[1]][1], template.translation)
         return sum(left for left, _ in best.values()), shown
 

@@ -10,6 +10,8 @@ FEW_LETTERS = 4
 """Templates with fewer letters, such as '{name} is {value}', fit almost anything: such a match
 counts only if it leaves no English phrase, or if the template has quotes."""
 _WORD = re.compile(r'[^\s,;(]*')
+CODE = re.compile(r'(code|call|function_name|msg)\d*')
+"""Names of places for code, a function's name or Python's message: they are not translated."""
 _QUOTES = tuple('`\'"')
 """A place after one of these is a name, which is not translated."""
 

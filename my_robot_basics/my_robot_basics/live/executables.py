@@ -166,7 +166,7 @@ def _prepend_to_variable(name: str, folder: Path) -> str:
     return os.pathsep.join(filter(None, [str(folder), os.environ.get(name, '')]))
 
 
-def _describe_exit(code: int | None) -> str:
-    if code is not None and code < 0:
-        return f'by {signal_name(-code)}'
-    return f'exit code {code}'
+def _describe_exit(exit_code: int | None) -> str:
+    if exit_code is not None and exit_code < 0:
+        return f'by {signal_name(-exit_code)}'
+    return f'exit code {exit_code}'

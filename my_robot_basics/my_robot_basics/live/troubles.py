@@ -122,7 +122,9 @@ def _frames(error: BaseException) -> list[traceback.FrameSummary]:
 
 
 def _line(frame: traceback.FrameSummary) -> str:
-    return f'{_place(frame.filename)}line {frame.lineno}, in {frame.name}: {frame.line}'
+    line_number, function_name, code = frame.lineno, frame.name, frame.line
+    where = f'line {line_number}, in {function_name}: {code}'
+    return ', '.join(filter(None, (_file_name(frame.filename), where)))
 
 
 def _unpublished(error: BaseException) -> tuple[str, str] | None:
@@ -156,9 +158,9 @@ def _service(error: BaseException) -> str:
     return ''
 
 
-def _place(filename: str) -> str:
+def _file_name(filename: str) -> str:
     """Return a file's name for a message; '' for a cell, whose file name is meaningless."""
     path = Path(filename)
     if path.parent.name.startswith('ipykernel_') or filename.startswith('<'):
         return ''
-    return f'{path.name}, '
+    return path.name
