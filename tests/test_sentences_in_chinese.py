@@ -346,8 +346,8 @@ WITH_LINES = {
     'its callback has not returned (line 12: publish)': '它的回调还没有返回（第 12 行：publish）',
     'a callback sleeps in line 4 (sleep(period); publish), and meanwhile the timer cannot call '
     'anything: leave the sleep out': (
-        '有一个回调在第 4 行睡眠（sleep(period); publish），这期间定时器什么也调用不了：'
-        '请去掉这个睡眠'
+        '有一个回调在第 4 行休眠（sleep(period); publish），这期间定时器什么也调用不了：'
+        '请去掉这个休眠调用'
     ),
     'your cell `a` stopped with AssertionError: line 12: assert publish, message': (
         '你的单元格 `a` 停止了：AssertionError：第 12 行：assert publish, message'

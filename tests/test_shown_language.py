@@ -188,4 +188,4 @@ def test_the_feedback_page_splits_a_reason_with_colons_into_its_parts():
     html = render_page(notebook, ABOUT)
     assert '<dt>实际</dt><dd>[30.0]</dd>' in html
     assert '>这些是度：两个都用 radians() 换算</dd>' in html
-    assert '评分时检查，超出“name 里依次是 joint1 和 joint2”的部分' in html
+    assert '评分时检查“name 里依次是 joint1 和 joint2”以外的内容' in html
