@@ -140,6 +140,16 @@ def test_sentences_of_topic_doctor_and_live_are_translated_into_chinese(english,
 
 
 OF_CHECKS = {
+    '0.50 Hz over 10 s (1 message)': '10 s 内为 0.50 Hz（1 条消息）',
+    '7.0 Hz over 6 s (42 messages), and several messages at once': (
+        '6 s 内（42 条消息），7.0 Hz，其中有几条消息同时到达'
+    ),
+    'pauses of 1.2 s over 6 s (24 messages)': '6 s 内（24 条消息），停顿长达 1.2 s',
+    '(53.32, -119.5), which looks like degrees': '(53.32, -119.5)，看起来像是度',
+    'your cell `a` did not end and was interrupted': '你的单元格 `a` 没有结束，已被中断',
+    'no outcome while the server has not said how the goal ended': (
+        '服务端还没有说目标怎样结束时，不发布结局'
+    ),
     'a stamp 5.0 s ahead of it': '时间戳比发送时的时钟超前 5.0 s',
     'a stamp 0.2 s behind it': '时间戳比发送时的时钟落后 0.2 s',
     '1 message in 2.0 s': '2.0 s 内有 1 条消息',

@@ -119,7 +119,7 @@ def test_the_feedback_page_is_in_the_language_of_the_notebook():
         '0 / 2 分',
         '/kinematics/joint_states 每秒传送 5 条消息',
         '✗ 还未通过',
-        '预期：/kinematics/joint_states 的频率为 5.0 Hz；实际：1.0 Hz，10 s 内（10 条消息）。',
+        '预期：/kinematics/joint_states 的频率为 5.0 Hz；实际：10 s 内为 1.0 Hz（10 条消息）。',
         '定时器的周期以秒为单位，周期 = 1 / 频率',
         '单元格 <code>a</code> 被改动了：以原来的为准',
     ):

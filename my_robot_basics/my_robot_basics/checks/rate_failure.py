@@ -23,9 +23,7 @@ AT_ONCE = 'several messages arrive at once'
 
 def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     """Raise CheckFailed with the rate of the recording and a picture of the arrivals."""
-    n = len(recording.messages)
-    over = f'over {recording.seconds:.3g} s ({n} message{"" if n == 1 else "s"})'
-    seen, cause, hint = _explanation(recording, hz, over)
+    seen, cause, hint = _explanation(recording, hz)
     hint = why_too_slow(recording, hz) or hint
     picture = pictures.plot_arrivals(recording, hz=hz)
     doubt = Starved if starved.may_be_starved(recording, hz) else CheckFailed
@@ -33,8 +31,9 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     fail(expected=expected, seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
 
 
-def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str, str]:
+def _explanation(recording: 'Recording', hz: float) -> tuple[str, str, str]:
     """Return what was seen, its cause, and what to try, for the first fault that fits."""
+    over = f'over {recording.seconds:.3g} s ({_messages(recording)})'
     if every := rates.leaves_out(recording):
         seen, cause = f'one message of {every} missing each time {over}', 'messages are left out'
         return seen, cause, 'publish in every call of the timer'
@@ -44,14 +43,14 @@ def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str
         return seen, AT_ONCE, rates.ONCE
     if recording.rate_hz > TOO_FAST_TIMES * hz:
         # this comes before pauses: a node may pause because it is busy with so many messages
-        seen, cause = f'{_hz(recording.rate_hz)} {over}', 'far too many messages'
+        seen, cause = _hz_over(recording, recording.rate_hz), 'far too many messages'
         hint = (
             'the timer period is 0, or nearly (period = 1 / rate, and 1 // rate is 0), or each'
             ' call of the timer makes another timer: make one, in __init__'
         )
         return seen, cause, hint
     if _has_extra(recording, hz):
-        seen = f'{_hz(recording.rate_hz)} {over}, and several messages at once'
+        seen = f'{_rounded(recording.rate_hz)} Hz {over}, and several messages at once'
         return seen, AT_ONCE, rates.ONCE
     near = recording.rate_hz >= 0.9 * hz
     if recording.is_over and (near or not recording.messages):
@@ -72,7 +71,7 @@ def _explanation(recording: 'Recording', hz: float, over: str) -> tuple[str, str
         cause = 'messages alternate between too early and too late'
         hint = 'the messages are unevenly spaced, so use one timer, and do not change its period'
         return seen, cause, hint
-    seen, cause = f'{_hz(_measured_hz(recording, hz))} {over}', 'another rate'
+    seen, cause = _hz_over(recording, _measured_hz(recording, hz)), 'another rate'
     return seen, cause, 'the timer period is in seconds, and period = 1 / rate'
 
 
@@ -107,6 +106,15 @@ def _measured_hz(recording: 'Recording', hz: float) -> float:
     if recording.clock == 'wall' and abs(rates.off_intended(recording, hz)) > rates.TOLERANCE:
         return 1.0 / periods.intended_period(rates.times_of(recording))
     return recording.rate_hz
+
+
+def _hz_over(recording: 'Recording', rate_hz: float) -> str:
+    return f'{_rounded(rate_hz)} Hz over {recording.seconds:.3g} s ({_messages(recording)})'
+
+
+def _messages(recording: 'Recording') -> str:
+    n = len(recording.messages)
+    return f'{n} message{"" if n == 1 else "s"}'
 
 
 def _hz(rate_hz: float) -> str:

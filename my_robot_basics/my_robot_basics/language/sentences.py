@@ -44,7 +44,7 @@ MOST_SPLITS = 10
 OF_CODE = 1e-4
 """What a place with code costs: of two matches, the one with less code is taken."""
 
-_HOW_MANY = re.compile(r'(len|count|exit_code|number|lineno|line_number)\d*')
+_HOW_MANY = re.compile(r'(n|len|count|exit_code|number|lineno|line_number)\d*')
 """Names of places that only a number, or `…` for a hidden one, may fill: `{len} wrong`."""
 _NUMBER = re.compile(r'[\d,.]+|…')
 
