@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from my_robot_basics.checks import CheckFailed, expect, fail
-from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.feedback.errors import shorten, shorten_exception
 
 WORDS = {'expected': '5.0 Hz', 'seen': '1.0 Hz', 'hint': 'period = 1 / rate'}
 SENTENCE = 'expected 5.0 Hz, saw 1.0 Hz: period = 1 / rate'
@@ -60,3 +60,20 @@ def test_fail_always_raises():
 )
 def test_shorten_makes_one_printable_line(text, expected):
     assert shorten(text) == expected
+
+
+@pytest.mark.parametrize(
+    ('said', 'expected'),
+    [
+        (
+            'ValueError: no\n  more (line 4, in f: g(x))',
+            'ValueError: no more (line 4, in f: g(x))',
+        ),
+        (f'E: {"a" * 300} (line 4, in f: g(x))', f'E: {"a" * 175}… (line 4, in f: g(x))'),
+        (f'E: no (line 4, in f: {"g" * 200})', f'E: no (line 4, in f: {"g" * 85}…)'),
+        ('E: ' + 'a' * 300, 'E: ' + 'a' * 196 + '…'),
+    ],
+)
+def test_a_long_exception_keeps_the_line_where_it_was_raised(said, expected):
+    assert shorten_exception(said) == expected
+    assert len(expected) <= 200

@@ -5,7 +5,7 @@ They tell students where to look; the verdict depends only on what the check obs
 
 from my_robot_basics.exchange import wire
 from my_robot_basics.exchange.asking import reply_value
-from my_robot_basics.feedback.errors import shorten
+from my_robot_basics.feedback.errors import shorten, shorten_exception
 
 _NONE = '', '', ''
 
@@ -13,7 +13,7 @@ _NONE = '', '', ''
 def last_raised(node_name: str) -> str:
     """Return the last exception of that node's callbacks, '' if the notebook reports none."""
     body = reply_value(wire.request(op='trouble', name=node_name))
-    return shorten(body) if isinstance(body, str) else ''
+    return shorten_exception(body) if isinstance(body, str) else ''
 
 
 def unpublished_field(node_name: str) -> tuple[str, str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from my_robot_basics.drawing.described import png_output
 from my_robot_basics.feedback import hidden
+from my_robot_basics.language.english import split_line
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.session.errors import in_lines
 
@@ -118,6 +119,15 @@ def shorten(text: object, most: int = MOST_CHARACTERS) -> str:
     line = ' '.join(str(text).split())
     line = ''.join(character if character.isprintable() else '?' for character in line)
     return line if len(line) <= most else line[: most - 1] + '…'
+
+
+def shorten_exception(said: str) -> str:
+    """Shorten an exception's text, and keep the line where it was raised, if it names one."""
+    what, where = split_line(' '.join(said.split()))
+    if not where:
+        return shorten(what)
+    where = shorten(where, MOST_CHARACTERS // 2)
+    return f'{shorten(what, MOST_CHARACTERS - len(where) - len(" ()"))} ({where})'
 
 
 def show(picture: bytes, *, alt: str) -> None:

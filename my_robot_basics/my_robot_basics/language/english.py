@@ -47,5 +47,5 @@ def split_line(raised: str) -> tuple[str, str]:
 
     The line is '' if there is none.
     """
-    found = _WITH_LINE.fullmatch(raised)
+    found = _WITH_LINE.fullmatch(raised) if raised.endswith(')') else None
     return (found[1], found[2]) if found else (raised, '')
