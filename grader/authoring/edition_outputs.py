@@ -48,7 +48,7 @@ class OutputWords:
     def translate(self, output: NotebookNode) -> None:
         """Translate an output's words, if they are the course's, in place."""
         if output.output_type == 'stream':
-            output.text = _by_line(output.text, self._printed)
+            output.text = self.printed(output.text)
         data = output.get('data', {})
         page = data.get('text/html', '')
         if output.output_type != 'display_data':
@@ -60,11 +60,11 @@ class OutputWords:
                 lambda found: found[1] or self._translate_html(found[2]), page
             )
         elif page.startswith(PANEL):
-            data['text/plain'] = self._panel(data['text/plain'])
+            data['text/plain'] = self.panel(data['text/plain'])
             tag, end, _ = page.partition('>')
             data['text/html'] = f'{tag}{end}{html.escape(data["text/plain"])}</pre>'
         elif not page and 'text/plain' in data:
-            data['text/plain'] = _by_line(data['text/plain'], self._printed)
+            data['text/plain'] = self.printed(data['text/plain'])
 
     @cached_property
     def _sentences(self) -> Sentences:
@@ -103,12 +103,16 @@ class OutputWords:
             if 'alt' in about:
                 about['alt'] = words
 
-    def _panel(self, text: str) -> str:
+    def panel(self, text: str) -> str:
         """Translate the state of a node, and what follows an exception, but not log lines."""
         first, *lines = text.split('\n')
         title, colon, state = first.partition(': ')
         lines = [_GOES_ON.sub(lambda found: self._say(found[0]), line) for line in lines]
         return '\n'.join([f'{title}{colon}{self._say(state)}', *lines])
+
+    def printed(self, text: str) -> str:
+        """Translate the printed lines that are the course's."""
+        return _by_line(text, self._printed)
 
     def _printed(self, line: str) -> str:
         """Translate a printed line, or the part of it that is a sentence of the course."""

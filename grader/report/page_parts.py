@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.sentences import REASON
-from my_robot_basics.language.speaking import sentences
+from my_robot_basics.language.speaking import in_language, sentences
 from my_robot_basics.validate.pictures import KINDS, why_not_shown
 from my_robot_basics.validate.titles import title_of_check, title_of_failure
 from my_robot_basics.validate.trouble import TROUBLE
@@ -15,6 +15,7 @@ from nbformat import NotebookNode
 
 from grader.common.text import visible
 from grader.notebook.restore import KEY, grade_id, role
+from grader.report.shown_outputs import in_page_language
 
 MAX_TEXT_CHARACTERS = 5_000
 """How much of one output is shown."""
@@ -81,15 +82,15 @@ def find_sections(
             marks = cell.metadata.nbgrader
             sections.append(PageSection(name, cell.source, cell.cell_type == 'markdown'))
             sections[-1].comment = marks.get('comment') or ''
-            sections[-1].outputs += _outputs(cell)
+            sections[-1].outputs += _outputs(cell, language)
             if marks.get('grade'):
                 sections[-1].checks.append(_check(cell, language))
         elif kind == 'grade':
             sections[-1].checks.append(_check(cell, language))
         elif kind == 'locked' and name.startswith(f'{sections[-1].name}-'):
-            sections[-1].outputs += _outputs(cell)
+            sections[-1].outputs += _outputs(cell, language)
         elif cell.cell_type == 'code' and cell.get('outputs'):
-            others.append((cell.source, list(_outputs(cell))))
+            others.append((cell.source, list(_outputs(cell, language))))
     return sections, others
 
 
@@ -113,7 +114,7 @@ def _check(cell: NotebookNode, language: str = ENGLISH) -> CheckedCell:
         troubles=troubles,
         notes=tuple(note for note in told if note not in troubles),
         comment='' if is_answer else marks.get('comment') or '',
-        outputs=() if is_answer else tuple(_outputs(cell, about=title, reason=reason)),
+        outputs=() if is_answer else tuple(_outputs(cell, language, about=title, reason=reason)),
         source='' if is_answer else cell.source.strip(),
         **_parts(reason, verdict.get('hint', ''), language),
     )
@@ -148,7 +149,7 @@ def _missing_reason(status: str, *, is_answer: bool) -> str:
 
 
 def _outputs(
-    cell: NotebookNode, *, about: str = '', reason: str | None = None
+    cell: NotebookNode, language: str, *, about: str = '', reason: str | None = None
 ) -> Iterator[CellOutput]:
     """Yield a cell's outputs in harmless forms: text, PNG and JPEG.
 
@@ -159,34 +160,39 @@ def _outputs(
             continue
         if reason and output.get('text', '').strip() == reason:
             continue
+        shown = in_page_language(output, language)
         if output.output_type == 'error':
-            yield _text_piece('error', '\n'.join(output.traceback) or output.evalue)
+            yield _text_piece('error', '\n'.join(shown.traceback) or output.evalue, language)
         elif output.output_type == 'stream':
-            yield _text_piece('text', output.text)
+            yield _text_piece('text', shown.text, language)
         else:
-            yield from show_data(output.data, about)
+            yield from show_data(shown.data, about, language)
     for name, picture in cell.get('attachments', {}).items():
-        yield from show_data({**picture, 'text/plain': name}, about, is_drawn=False)
+        yield from show_data({**picture, 'text/plain': name}, about, language, is_drawn=False)
 
 
-def show_data(data: dict, about: str, *, is_drawn: bool = True) -> Iterator[CellOutput]:
+def show_data(
+    data: dict, about: str, language: str = ENGLISH, *, is_drawn: bool = True
+) -> Iterator[CellOutput]:
     """Yield the first harmless form of an output's data: a picture, or text."""
     described = str(data.get('text/plain', ''))
     for kind in KINDS:
         if isinstance(data.get(kind), str) and _BASE64.fullmatch(data[kind]):
             if why := why_not_shown(data[kind]):
-                yield _text_piece('text', f'[{why} was left out]')
+                yield CellOutput('text', in_language(language, f'[{why} was left out]'))
                 return
             described = '' if described.startswith('<') else described  # "<Figure size 640x480 …>"
-            alt = described or (f'Picture of: {about}' if about else 'Picture that this cell drew')
+            ours = f'Picture of: {about}' if about else 'Picture that this cell drew'
+            alt = described or in_language(language, ours)
             yield CellOutput(kind, ''.join(data[kind].split()), alt, is_drawn)
             return
     if described:
-        yield _text_piece('text', described)
+        yield _text_piece('text', described, language)
 
 
-def _text_piece(kind: str, text: str) -> CellOutput:
+def _text_piece(kind: str, text: str, language: str) -> CellOutput:
     text = strip_ansi(text).rstrip('\n')
     if (more := len(text) - MAX_TEXT_CHARACTERS) > 0:
-        text = f'{text[:MAX_TEXT_CHARACTERS]}\n[{more:,} more characters]'
+        rest = in_language(language, f'[{more:,} more characters]')
+        text = f'{text[:MAX_TEXT_CHARACTERS]}\n{rest}'
     return CellOutput(kind, visible(text))
