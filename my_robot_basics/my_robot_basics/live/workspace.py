@@ -3,7 +3,6 @@
 Run as a module, it is `./course workspace`. Imports nothing that is slow.
 """
 
-import argparse
 import os
 import shutil
 import sys
@@ -12,6 +11,7 @@ from pathlib import Path
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.live.copies import Copied
 from my_robot_basics.session import build_tools, classroom
+from my_robot_basics.session.arguments import Arguments
 from my_robot_basics.session.errors import LiveError, tell
 from my_robot_basics.session.overlays import Overlay
 
@@ -140,7 +140,7 @@ def ros_ws_path(path: Path) -> str:
 
 def main(argv: list[str] | None = None) -> str | None:
     """Run `./course workspace`, and return what `sys.exit` takes."""
-    parser = argparse.ArgumentParser(
+    parser = Arguments(
         './course workspace',
         description=in_language_here(
             'Make ros_ws/, a colcon workspace with a copy of the packages that is yours to edit.'

@@ -1,6 +1,5 @@
 """`./course ros-shell`: a shell with ROS's environment, in the ROS domain of a lesson."""
 
-import argparse
 import os
 import sys
 import time
@@ -10,6 +9,7 @@ from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.ros2 import environment
 from my_robot_basics.ros2.errors import CommandError
 from my_robot_basics.session import classroom, lessons
+from my_robot_basics.session.arguments import Arguments
 
 STARTUP = Path(__file__).with_name('terminal.bash')
 SHOWN = (
@@ -45,8 +45,8 @@ def main(argv: list[str] | None = None) -> int:
         return 127 if isinstance(error, FileNotFoundError) else 126
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> Arguments:
+    parser = Arguments(
         './course ros-shell',
         description=in_language_here('Open a shell in which ROS is set up, and say what was set.'),
         usage='%(prog)s [--lesson LESSON] [-c SCRIPT | -- COMMAND ...]',
@@ -86,7 +86,8 @@ def _report(running: list[lessons.RunningLesson], domain_id: int) -> str:
     lines = []
     for lesson in running:
         started = time.strftime('%H:%M:%S', time.localtime(lesson.started_nsec / 1e9))
-        joined = '  <- joined' if lesson.domain_id == domain_id else ''
+        mark = 'joined' if lesson.domain_id == domain_id else ''
+        joined = f'  <- {in_language_here(mark)}' if mark else ''
         where = in_language_here(f'in ROS domain {lesson.domain_id}, {started}')
         lines.append(f'  {lesson.name:20} {where}{joined}')
     if lines:

@@ -3,7 +3,6 @@
 The exit code is 0 if all of them pass, 1 if not, and 2 if nothing could be checked.
 """
 
-import argparse
 import asyncio
 import json
 import signal
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language_here
+from my_robot_basics.session.arguments import Arguments
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.forks import ForkServer
 from my_robot_basics.validate.report_words import front_end_texts
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def main(arguments: list[str] | None = None) -> int:
     """Validate the notebook that the command line names; return the exit code."""
-    parser = argparse.ArgumentParser(
+    parser = Arguments(
         prog='./course validate',
         description=in_language_here(
             'Run the visible checks of a lesson. Exit code: 0 if all of them pass, 1 if not, 2 if '

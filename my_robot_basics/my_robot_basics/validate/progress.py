@@ -11,6 +11,7 @@ from typing import Literal
 
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language, in_language_here, language_of, put
+from my_robot_basics.session.arguments import Arguments
 from my_robot_basics.validate.cells import KEY
 from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.exercises import find_exercises
@@ -159,7 +160,7 @@ def _answers(notebook: Path) -> dict[str, str]:
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the progress; return 0, or 2 if there is no contents page."""
-    parser = argparse.ArgumentParser(
+    parser = Arguments(
         prog='./course progress',
         usage='./course progress [-h] [--language LANGUAGE]',
         description=in_language_here('Show which exercises Validate has seen pass.'),
