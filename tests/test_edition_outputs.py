@@ -21,6 +21,7 @@ PRINTED = {
         '已建立   $ROS_WS/src/arm：功能包，由你编辑\n'
     ),
     f'{TREE}sources: what you write\n': f'{TREE}源代码：你写的内容\n',
+    'spare: started\n': 'spare：已启动\n',
     'In a terminal, join this lesson: export ROS_DOMAIN_ID=11\r\n': (
         '在终端里加入这一课：export ROS_DOMAIN_ID=11\r\n'
     ),
@@ -80,7 +81,8 @@ def test_a_panel_translates_the_state_of_its_node_and_keeps_its_log():
     data = shown(new_output('display_data', {'text/html': page, 'text/plain': PANEL})).data
     first, *log, last = data['text/plain'].split('\n')
     assert (first, last) == ('Arm: 已停止', '  Arm 继续运行')
-    assert log == PANEL.split('\n')[1:-1]
+    assert log[:-1] == PANEL.split('\n')[1:-2]
+    assert log[-1] == "  第 4 行，在 tick 里：raise ValueError('no node is running')"
     assert data['text/html'].endswith('Arm 继续运行</pre>')
     assert data['text/html'].startswith(f'<pre style="{panel.STYLE}">Arm: 已停止\n')
 

@@ -1,12 +1,14 @@
 """What is known about a node that has stopped: its exception, or the line where it waits."""
 
 import json
+import re
 from types import SimpleNamespace
 
 import pytest
 from my_robot_basics.doctor import inside
 from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.live import exercise, troubles
+from my_robot_basics.live.panel import Panel
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -117,3 +119,15 @@ def test_a_node_of_the_answer_that_nothing_spins_is_idle(own, executor, is_idle)
     node = Answer() if own else SimpleNamespace()
     node.executor = executor
     assert exercise._is_idle(Answer, node) == is_idle
+
+
+def test_a_panel_names_the_line_of_an_exception_in_the_language_of_the_lesson(monkeypatch, capsys):
+    monkeypatch.setenv('JPY_SESSION_NAME', 'notebooks/zh_CN/07_common_errors.ipynb')
+    try:
+        json.loads('{')
+    except ValueError as error:
+        Panel('Arm').error(error)
+    *_, line, goes_on = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r'  decoder\.py，第 \d+ 行，在 raw_decode 里：.+', line)
+    assert goes_on == '  Arm 继续运行'
+    troubles.forget('')

@@ -32,8 +32,10 @@ BEGINS = 4
 
 _TEXT = re.compile(r'(<pre.*?</pre>)|(?<=>)([^<>]*[^\W\d_][^<>]*)', re.DOTALL)
 """Code in a page, which is not translated; or a text between two tags."""
-_GOES_ON = re.compile(r'(?<=^  )\w+ goes on$')
-"""What follows an exception in a panel."""
+_GOES_ON = re.compile(r'(?<=^  )(\w+ goes on|(\S+, )?line \d+, in \S+: .*)$')
+"""What follows an exception in a panel: where it was raised, and that the node goes on."""
+_OF_A_COMMAND = re.compile(r'^\w+: started$', re.MULTILINE)
+"""What `run_commands` prints of a command. A student's code may print the same."""
 _COLUMNS = re.compile(r'(.*\s{2})(\S.*)|(\w[\w ]*: )(.+)')
 """A line with a sentence in its second column, or after a prefix of the lesson's code."""
 
@@ -48,7 +50,8 @@ class OutputWords:
     def translate(self, output: NotebookNode) -> None:
         """Translate an output's words, if they are the course's, in place."""
         if output.output_type == 'stream':
-            output.text = self.printed(output.text)
+            said = _OF_A_COMMAND.sub(lambda found: self._say(found[0]), output.text)
+            output.text = self.printed(said)
         data = output.get('data', {})
         page = data.get('text/html', '')
         if output.output_type != 'display_data':

@@ -95,7 +95,8 @@ class Panel:
         troubles.remember(self._name, error)
         where, what = where_and_what(error)
         goes_on = in_language_here(f'{self._title} goes on')
-        text = '\n'.join(filter(None, [what, where, f'  {goes_on}']))
+        lines = [f'  {in_language_here(line.strip())}' for line in where.splitlines()]
+        text = '\n'.join([*filter(None, [what]), *lines, f'  {goes_on}'])
         self._add(PanelEntry(text, where=f'{type(error).__name__} {where}'))
         if not notebook.in_kernel():
             print(text, flush=True)
