@@ -146,7 +146,7 @@ def report(language):
 
 def test_validate_speaks_the_language_of_the_notebook():
     said = ' '.join(as_text(report('zh_CN')).split())
-    assert '✗ Each message has both names （0 / 2 分；评分时还有更多检查）' in said
+    assert '✗ Each message has both names（0 / 2 分；评分时还有更多检查）' in said
     assert CHINESE_REASON.replace(' ', '') in said.replace(' ', '')
     assert said.endswith('1 项看得见的检查中有 1 项未通过：少了 2 分。')
     data = json.loads(json.dumps(report('zh_CN').as_data()))

@@ -42,7 +42,8 @@ def _check(check: CheckFeedback, language: str) -> Iterator[str]:
         points = say('{earned} of {points}', earned=f'{check.earned:g}', points=points)
     more = MORE.get(check.outcome) or ('more checks at grading' if check.is_partly_hidden else '')
     about = say('({points}; {more})' if more else '({points})', points=points, more=say(more))
-    yield f'  {MARKS[check.outcome]} {check.title} {about}'
+    gap = ' ' if about.isascii() else ''  # full-width brackets need no space before them
+    yield f'  {MARKS[check.outcome]} {check.title}{gap}{about}'
     for line in (check.message, *check.notes):
         yield from _indented(line)
 
