@@ -99,6 +99,7 @@ def test_the_report_page_is_in_the_requested_language_and_the_json_is_not(course
     assert 'expected 2, saw 17: x' in words_of(english)
     assert '预期：2；实际：17' in words_of(chinese)
     assert '由人' in words_of(chinese)
+    assert re.search(r'\d 名学生\s*；\s*平均', words_of(chinese))
     left = re.findall(r'(?:\b[a-z]{2,} ){3,}', words_of(chinese))
     assert {words for words in left if 'numbers are doubled' not in words} == set()  # the toy's
     theirs = json.loads(page.with_suffix('.json').read_text(encoding='utf-8'))
