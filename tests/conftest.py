@@ -368,11 +368,7 @@ def run() -> Iterator[Callable]:
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Remove wall time limits of the simulated clock: exact results must not depend on load."""
-    from my_robot_basics.checks import (  # imported late: most tests need no rclpy
-        barriers,
-        clock,
-        clock_budget,
-    )
+    from my_robot_basics.checks.clock import barriers, clock, clock_budget
 
     for module, limit in (
         (clock_budget, 'BUDGET_SEC'),

@@ -3,7 +3,7 @@
 import math
 
 from builtin_interfaces.msg import Time
-from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.checks.recordings.recording import Recording, Sample
 from sensor_msgs.msg import JointState
 
 START_SEC = 1000.0

@@ -3,8 +3,9 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, absent_servers
-from my_robot_basics.checks.absent_servers import publish_in_vain
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.arm import absent_servers
+from my_robot_basics.checks.arm.absent_servers import publish_in_vain
 from my_robot_basics.feedback.errors import Starved
 
 

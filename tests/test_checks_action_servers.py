@@ -6,7 +6,8 @@ import time
 
 import pytest
 from goal_clients import ENDS, WORDS, MoveArmClient, check_cancels, check_outcomes
-from my_robot_basics.checks import CheckFailed, action_server, client_nodes, replies, served_action
+from my_robot_basics.checks import CheckFailed, action_server, replies
+from my_robot_basics.checks.actions import client_nodes, served_action
 from nodes.running import STOPS, imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor

@@ -6,7 +6,8 @@ import time
 import pytest
 import rclpy
 from goal_clients import WORDS, MoveArmClient, check_cancels, check_outcomes
-from my_robot_basics.checks import CheckFailed, served_action
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.actions import served_action
 from nodes.running import STOPS
 from rclpy.action import ActionClient
 from sensor_msgs.msg import JointState

@@ -8,8 +8,8 @@ import time
 
 import pytest
 from my_robot_basics.checks import CheckFailed, action, moves
-from my_robot_basics.checks.actions import FollowedClock
-from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.actions.actions import FollowedClock
+from my_robot_basics.checks.clock.clock import SimulatedClock
 from nodes.running import STOPS, imported, running
 from rclpy.action import GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup

@@ -1,7 +1,8 @@
 """No server of an action, or two: the check names the node and the likely cause."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, action, awaited_servers, moves
+from my_robot_basics.checks import CheckFailed, action, moves
+from my_robot_basics.checks.services import awaited_servers
 from nodes.running import imported
 from rclpy.action import ActionServer
 from rclpy.node import Node

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from my_robot_basics.checks import angles
+from my_robot_basics.checks.values import angles
 
 WANTED = (23.4, -67.8, -35.92, 67.8)
 

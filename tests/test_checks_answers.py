@@ -1,7 +1,7 @@
 """Lines of a log about IK: the numbers in them, and which of them hold angles."""
 
 import pytest
-from my_robot_basics.checks import answers
+from my_robot_basics.checks.values import answers
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,9 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, arm_refusals
-from my_robot_basics.checks.arm_progress import LATEST_SEC, is_under_way
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.arm import arm_refusals
+from my_robot_basics.checks.arm.arm_progress import LATEST_SEC, is_under_way
 
 from arm_interfaces.action import MoveArm
 

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from my_robot_basics.checks.arm_lines import ON_LINE_RAD, off_line, why_off_line
-from my_robot_basics.checks.arm_remaining import expect_remaining
-from my_robot_basics.checks.arm_reports import MoveReport
-from my_robot_basics.checks.arm_results import ELSEWHERE, IN_DEGREES, NOT_THERE, why_off
-from my_robot_basics.checks.robot_time import WallTime
-from my_robot_basics.checks.watched_arm import WatchedArm
+from my_robot_basics.checks.arm.arm_lines import ON_LINE_RAD, off_line, why_off_line
+from my_robot_basics.checks.arm.arm_remaining import expect_remaining
+from my_robot_basics.checks.arm.arm_reports import MoveReport
+from my_robot_basics.checks.arm.arm_results import ELSEWHERE, IN_DEGREES, NOT_THERE, why_off
+from my_robot_basics.checks.arm.watched_arm import WatchedArm
+from my_robot_basics.checks.clock.robot_time import WallTime
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 
 from arm_interfaces.action import MoveArm

@@ -6,10 +6,11 @@ import random
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, arm_speed, moves
-from my_robot_basics.checks.arm_cancels import _went_on_without_answer
-from my_robot_basics.checks.robot_time import DrivenTime
-from my_robot_basics.checks.watched_arm import WatchedArm
+from my_robot_basics.checks import CheckFailed, moves
+from my_robot_basics.checks.arm import arm_speed
+from my_robot_basics.checks.arm.arm_cancels import _went_on_without_answer
+from my_robot_basics.checks.arm.watched_arm import WatchedArm
+from my_robot_basics.checks.clock.robot_time import DrivenTime
 from my_robot_basics.feedback.errors import Starved
 
 from arm_interfaces.action import MoveArm

@@ -4,8 +4,8 @@ import math
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks.arm_stops import expect_on_the_way, last_told
-from my_robot_basics.checks.cancel_moments import moment_to_cancel
+from my_robot_basics.checks.arm.arm_stops import expect_on_the_way, last_told
+from my_robot_basics.checks.arm.cancel_moments import moment_to_cancel
 from my_robot_basics.feedback.errors import CheckFailed
 
 from arm_interfaces.action import MoveArm

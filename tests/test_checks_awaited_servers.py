@@ -3,8 +3,9 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import awaited_servers, open_action, services
-from my_robot_basics.checks.awaited_servers import SERVER_SEC, NoServer, wait_for_server
+from my_robot_basics.checks.actions import open_action
+from my_robot_basics.checks.services import awaited_servers, services
+from my_robot_basics.checks.services.awaited_servers import SERVER_SEC, NoServer, wait_for_server
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 from my_robot_basics.graph.graphs import SETTLED_SEC
 from rclpy.context import Context

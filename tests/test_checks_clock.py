@@ -6,18 +6,9 @@ import time
 import types
 
 import pytest
-from my_robot_basics.checks import (
-    CheckFailed,
-    barriers,
-    clock,
-    clock_budget,
-    clock_use,
-    driven_topic,
-    drives,
-    due_ticks,
-    sampling,
-    topic,
-)
+from my_robot_basics.checks import CheckFailed, topic
+from my_robot_basics.checks.clock import barriers, clock, clock_budget, clock_use, due_ticks
+from my_robot_basics.checks.topics import driven_topic, drives, sampling
 from my_robot_basics.exchange import student
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import pressure

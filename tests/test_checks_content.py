@@ -4,7 +4,7 @@ import random
 
 import pytest
 from geometry_msgs.msg import Point, Point32, PoseWithCovariance
-from my_robot_basics.checks.content import content
+from my_robot_basics.checks.values.content import content
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import ChannelFloat32, JointState, PointCloud
 

@@ -1,8 +1,8 @@
 """Which messages arrive on a stage; none counts as lost before it could arrive."""
 
 import pytest
-from my_robot_basics.checks import delivery_experiment as stage_module
-from my_robot_basics.checks.delivery_experiment import DidNotRun, Stage
+from my_robot_basics.checks.values import delivery_experiment as stage_module
+from my_robot_basics.checks.values.delivery_experiment import DidNotRun, Stage
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from std_msgs.msg import Int32

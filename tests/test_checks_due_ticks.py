@@ -1,7 +1,7 @@
 """When the next message of a timer is due, computed from earlier ticks."""
 
 import pytest
-from my_robot_basics.checks.due_ticks import DueTicks
+from my_robot_basics.checks.clock.due_ticks import DueTicks
 
 STEP_NS = 10**8
 

@@ -3,9 +3,10 @@
 from dataclasses import replace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, earlier_looks
-from my_robot_basics.checks.earlier_looks import Look, Wanted, look_once
-from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.recordings.recording import Recording, Sample
+from my_robot_basics.checks.topics import earlier_looks
+from my_robot_basics.checks.topics.earlier_looks import Look, Wanted, look_once
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import Starved, fail
 from my_robot_basics.graph.watcher import Watcher

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 from grade_cell import grade_cell
 from my_robot_basics.checks import service
-from my_robot_basics.checks.passage import Passage
+from my_robot_basics.checks.relays.passage import Passage
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node

@@ -3,8 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import followed_clocks
-from my_robot_basics.checks.robot_time import DrivenTime
+from my_robot_basics.checks.arm import followed_clocks
+from my_robot_basics.checks.clock.robot_time import DrivenTime
 from my_robot_basics.session import pressure
 
 

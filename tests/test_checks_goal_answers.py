@@ -1,8 +1,8 @@
 """What a check knows of a server's earlier answers to goals, also in other grade cells."""
 
 import pytest
-from my_robot_basics.checks import goal_answers
-from my_robot_basics.checks.goal_answers import GoalAnswers, answers_of, note_answer
+from my_robot_basics.checks.actions import goal_answers
+from my_robot_basics.checks.actions.goal_answers import GoalAnswers, answers_of, note_answer
 
 SERVER, OTHER = ((1, 2),), ((3, 4),)
 

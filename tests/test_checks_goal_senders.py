@@ -2,8 +2,8 @@
 
 import pytest
 from my_robot_basics.checks import CheckFailed
-from my_robot_basics.checks.goal_senders import AskedGoals
-from my_robot_basics.checks.scripted_action import ReceivedGoal
+from my_robot_basics.checks.actions.goal_senders import AskedGoals
+from my_robot_basics.checks.actions.scripted_action import ReceivedGoal
 
 
 def received(*names):

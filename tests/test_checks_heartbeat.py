@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, heartbeat
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.topics import heartbeat
 from my_robot_basics.feedback.errors import Starved
 
 

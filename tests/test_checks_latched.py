@@ -5,7 +5,7 @@ from contextlib import nullcontext
 
 import pytest
 from my_robot_basics.checks import CheckFailed, relay
-from my_robot_basics.checks.latched import published_before_discovery
+from my_robot_basics.checks.topics.latched import published_before_discovery
 from nodes.running import imported, running
 from rclpy.node import Node
 from std_msgs.msg import String

@@ -157,7 +157,7 @@ def test_a_missing_warning_fails():
 
 
 def test_a_node_that_does_not_run_is_named(monkeypatch):
-    monkeypatch.setattr('my_robot_basics.checks.node_log.NODE_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.checks.nodes.node_log.NODE_SEC', 1.0)
     with pytest.raises(CheckFailed, match='expected a node /ik_solver_node, saw no node'):
         rosout('ik_solver_node').__enter__()
 
@@ -212,7 +212,7 @@ def test_a_warning_after_the_answer_is_not_excused_by_an_earlier_target():
 
 
 def test_a_running_node_of_another_name_is_named_as_the_cause(monkeypatch):
-    monkeypatch.setattr('my_robot_basics.checks.node_log.NODE_SEC', 3.0)
+    monkeypatch.setattr('my_robot_basics.checks.nodes.node_log.NODE_SEC', 3.0)
     words = r"saw /ik_solver_node: .* super\(\)\.__init__\('ik'\)"
     with running('ik_solver'), pytest.raises(CheckFailed, match=words):
         rosout('ik').__enter__()

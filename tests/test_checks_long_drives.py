@@ -5,9 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from my_robot_basics.checks import drives, rates, topic
-from my_robot_basics.checks.clock import SimulatedClock
-from my_robot_basics.checks.driven_topic import DrivenTopic
+from my_robot_basics.checks import topic
+from my_robot_basics.checks.clock.clock import SimulatedClock
+from my_robot_basics.checks.recordings import rates
+from my_robot_basics.checks.topics import drives
+from my_robot_basics.checks.topics.driven_topic import DrivenTopic
 from nodes.running import running
 
 SECONDS, STEP_SEC = 60.0, 0.1

@@ -1,7 +1,7 @@
 """How the feedback shows a message that arrived."""
 
 from geometry_msgs.msg import Point
-from my_robot_basics.checks.message_text import message_text
+from my_robot_basics.checks.values.message_text import message_text
 from sensor_msgs.msg import JointState
 
 

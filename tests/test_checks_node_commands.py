@@ -6,7 +6,7 @@ import sys
 
 import pytest
 from my_robot_basics.checks import CheckFailed, node_command
-from my_robot_basics.checks.started_node import started_node
+from my_robot_basics.checks.nodes.started_node import started_node
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.live import commands

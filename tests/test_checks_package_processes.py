@@ -4,8 +4,8 @@ import signal
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import package_processes, spinning
-from my_robot_basics.checks.package_processes import GONE_SEC, RunningExecutable
+from my_robot_basics.checks.packages import package_processes, spinning
+from my_robot_basics.checks.packages.package_processes import GONE_SEC, RunningExecutable
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 
 

@@ -1,7 +1,7 @@
 """Which θ1 a log pairs with which θ2, in many layouts."""
 
 import pytest
-from my_robot_basics.checks import pairing
+from my_robot_basics.checks.values import pairing
 
 UP, DOWN = (65.92, -74.04), (1.46, 74.04)
 SOLUTIONS = [UP, DOWN]

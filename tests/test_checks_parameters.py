@@ -3,20 +3,14 @@
 import math
 
 import pytest
-from my_robot_basics.checks import (
-    CheckFailed,
-    node_parameters,
-    older_timers,
-    parameters,
-    rate_failure,
-    rate_parameter,
-    sampling,
-    topic,
-)
-from my_robot_basics.checks.inconclusive import Inconclusive
-from my_robot_basics.checks.parameter_refusals import expect_all_refused, fail_refused
-from my_robot_basics.checks.parameters import NodeParameters
-from my_robot_basics.checks.rate_parameters import RateParameter
+from my_robot_basics.checks import CheckFailed, node_parameters, rate_parameter, topic
+from my_robot_basics.checks.clock.inconclusive import Inconclusive
+from my_robot_basics.checks.nodes import parameters
+from my_robot_basics.checks.nodes.parameter_refusals import expect_all_refused, fail_refused
+from my_robot_basics.checks.nodes.parameters import NodeParameters
+from my_robot_basics.checks.nodes.rate_parameters import RateParameter
+from my_robot_basics.checks.recordings import older_timers, rate_failure
+from my_robot_basics.checks.topics import sampling
 from my_robot_basics.feedback.errors import fail
 from nodes.running import imported
 from rcl_interfaces.msg import ParameterValue, SetParametersResult

@@ -4,15 +4,15 @@ from itertools import count
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import pairs
-from my_robot_basics.checks import passage as passage_module
-from my_robot_basics.checks import pushed_out as pushed_out_module
-from my_robot_basics.checks.enough import fewest_in_a_row
-from my_robot_basics.checks.passage import MOST_LATE, Passage
-from my_robot_basics.checks.pushed_out import FEW, FLOOD, MOST, MOST_GRADED, PushedOut
-from my_robot_basics.checks.recorder import Recorder
-from my_robot_basics.checks.relay_faults import RelayFaults
-from my_robot_basics.checks.variety import VariedMessage
+from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.relays import pairs
+from my_robot_basics.checks.relays import passage as passage_module
+from my_robot_basics.checks.relays import pushed_out as pushed_out_module
+from my_robot_basics.checks.relays.enough import fewest_in_a_row
+from my_robot_basics.checks.relays.passage import MOST_LATE, Passage
+from my_robot_basics.checks.relays.pushed_out import FEW, FLOOD, MOST, MOST_GRADED, PushedOut
+from my_robot_basics.checks.relays.relay_faults import RelayFaults
+from my_robot_basics.checks.relays.variety import VariedMessage
 from my_robot_basics.feedback.errors import CheckFailed, Starved
 
 SEC = 1_000_000_000

@@ -3,7 +3,8 @@
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 from made_recordings import every, joint_state, recording
-from my_robot_basics.checks import CheckFailed, pictures
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.recordings import pictures
 from my_robot_basics.feedback import errors
 
 PNG = b'\x89PNG\r\n\x1a\n'

@@ -9,7 +9,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, drawing, player, player_meeting, player_report
+from my_robot_basics.checks import CheckFailed, player
+from my_robot_basics.checks.packages import drawing, player_meeting, player_report
 from my_robot_basics.feedback.errors import Starved, fail
 
 PLAYERS = Path(__file__).parent / 'nodes/players.py'

@@ -6,7 +6,8 @@ import random
 
 import pytest
 from made_recordings import every, recording, ticked
-from my_robot_basics.checks import CheckFailed, rates
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.recordings import rates
 
 
 @pytest.mark.parametrize(

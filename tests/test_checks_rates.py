@@ -7,7 +7,8 @@ import resource
 
 import pytest
 from made_recordings import every, recording, ticked
-from my_robot_basics.checks import CheckFailed, periods, rates
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.recordings import periods, rates
 from my_robot_basics.exchange import node_troubles
 
 

@@ -1,7 +1,7 @@
 """A subscription of a check: which publishers it has discovered, and which it can never match."""
 
 import pytest
-from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks.recordings.recorder import Recorder
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from rclpy.context import Context

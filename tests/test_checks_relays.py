@@ -1,8 +1,10 @@
 """A node that passes messages on is judged by what it publishes, with any QoS of its own."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, relay, relay_endpoints, relays, topic_endpoints
-from my_robot_basics.checks.latched import LATCHED
+from my_robot_basics.checks import CheckFailed, relay
+from my_robot_basics.checks.relays import relay_endpoints, relays
+from my_robot_basics.checks.topics import topic_endpoints
+from my_robot_basics.checks.topics.latched import LATCHED
 from nodes.running import running
 from rclpy.duration import Duration
 from rclpy.node import Node

@@ -4,7 +4,8 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import CheckFailed, enough, passage, relays
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.relays import enough, passage, relays
 from relaying import (
     Counts,
     check_delivery,

@@ -3,7 +3,8 @@
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, relays
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.relays import relays
 from relaying import Counts, check_delivery, check_late_joiner, monitor
 from sensor_msgs.msg import JointState
 

@@ -8,19 +8,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from made_recordings import every, on_wall, recording
-from my_robot_basics.checks import (
-    CheckFailed,
-    driven_topic,
-    drives,
-    rates,
-    sampling,
-    topic,
-    wall_recording,
-)
-from my_robot_basics.checks.clock import SimulatedClock
-from my_robot_basics.checks.driven_topic import DrivenTopic
-from my_robot_basics.checks.inconclusive import Inconclusive
-from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks import CheckFailed, topic
+from my_robot_basics.checks.clock.clock import SimulatedClock
+from my_robot_basics.checks.clock.inconclusive import Inconclusive
+from my_robot_basics.checks.recordings import rates
+from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.topics import driven_topic, drives, sampling, wall_recording
+from my_robot_basics.checks.topics.driven_topic import DrivenTopic
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.errors import Starved
 from my_robot_basics.graph.watcher import Watcher

@@ -3,8 +3,8 @@
 import warnings
 
 import pytest
-from my_robot_basics.checks import sending
-from my_robot_basics.checks.sending import ATTEMPTS, send_until_met, wait_for_readers
+from my_robot_basics.checks.services import sending
+from my_robot_basics.checks.services.sending import ATTEMPTS, send_until_met, wait_for_readers
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
 from std_srvs.srv import Trigger

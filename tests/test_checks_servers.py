@@ -7,7 +7,8 @@ import time
 import pytest
 from geometry_msgs.msg import Point
 from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server
-from my_robot_basics.checks import CheckFailed, elbow_up, ik, responses, servers, topic
+from my_robot_basics.checks import CheckFailed, ik, topic
+from my_robot_basics.checks.services import elbow_up, responses, servers
 from my_robot_basics.graph.watcher import Watcher
 from nodes.running import STOPS, imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup

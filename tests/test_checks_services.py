@@ -5,7 +5,8 @@ import threading
 import time
 
 import pytest
-from my_robot_basics.checks import CheckFailed, awaited_servers, ik, service, services
+from my_robot_basics.checks import CheckFailed, ik, service
+from my_robot_basics.checks.services import awaited_servers, services
 from my_robot_basics.session.errors import NotRunnable
 from nodes.running import imported, running
 from rclpy.callback_groups import ReentrantCallbackGroup

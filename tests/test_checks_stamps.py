@@ -1,10 +1,11 @@
 """Stamps of the node's clock and of the computer's are distinguished in every recording."""
 
 import pytest
-from my_robot_basics.checks import CheckFailed, own_clock, topic
-from my_robot_basics.checks.clock import Inconclusive
-from my_robot_basics.checks.own_clock import _ahead_sec
-from my_robot_basics.checks.recording import Recording, Sample
+from my_robot_basics.checks import CheckFailed, topic
+from my_robot_basics.checks.clock import own_clock
+from my_robot_basics.checks.clock.clock import Inconclusive
+from my_robot_basics.checks.clock.own_clock import _ahead_sec
+from my_robot_basics.checks.recordings.recording import Recording, Sample
 from my_robot_basics.feedback.errors import Starved
 from nodes.running import imported, running
 from rclpy.time import Time

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from made_recordings import on_wall
 from my_robot_basics.checks import CheckFailed
-from my_robot_basics.checks import recording as recording_module
+from my_robot_basics.checks.recordings import recording as recording_module
 from my_robot_basics.feedback.errors import Starved
 
 LOOKS_EVERY_10_MS = [0.21, 0.21, 0.2, 0.21, 0.21, 0.22, 0.21] * 3

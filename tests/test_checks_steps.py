@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 from made_recordings import recording
-from my_robot_basics.checks import drives, rates
+from my_robot_basics.checks.recordings import rates
+from my_robot_basics.checks.topics import drives
 
 MESSAGES = 40
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from jupyter_client.manager import start_new_kernel
-from my_robot_basics.checks.tick import PASSED, is_check
+from my_robot_basics.checks.clock.tick import PASSED, is_check
 
 CHECK = '"""Two and two are four"""\nfrom my_robot_basics.checks import expect\n'
 RIGHT = CHECK + "expect(True, expected=4, seen=4, hint='')"

@@ -8,14 +8,8 @@ from functools import partial
 
 import pytest
 from geometry_msgs.msg import Point
-from my_robot_basics.checks import (
-    CheckFailed,
-    graph,
-    student,
-    topic,
-    topic_endpoints,
-    wall_recording,
-)
+from my_robot_basics.checks import CheckFailed, graph, student, topic
+from my_robot_basics.checks.topics import topic_endpoints, wall_recording
 from my_robot_basics.exchange import settled
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher

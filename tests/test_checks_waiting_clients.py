@@ -6,7 +6,8 @@ import pytest
 import rclpy
 from geometry_msgs.msg import Point
 from ik_clients import IKClient, check_asks, check_never_blocks, server
-from my_robot_basics.checks import CheckFailed, ik, servers, topic
+from my_robot_basics.checks import CheckFailed, ik, topic
+from my_robot_basics.checks.services import servers
 from my_robot_basics.graph.watcher import Watcher
 
 from arm_interfaces.srv import SolveIK

@@ -3,9 +3,9 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import slow_moves
-from my_robot_basics.checks.slow_moves import wait_unless_it_crawls
-from my_robot_basics.checks.waits_in_vain import is_in_vain
+from my_robot_basics.checks.arm import slow_moves
+from my_robot_basics.checks.arm.slow_moves import wait_unless_it_crawls
+from my_robot_basics.checks.arm.waits_in_vain import is_in_vain
 
 from arm_interfaces.action import MoveArm
 

@@ -6,17 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 from made_recordings import on_wall
-from my_robot_basics.checks import (
-    CheckFailed,
-    looks,
-    sampling,
-    topic,
-    topic_endpoints,
-    wall_recording,
-)
-from my_robot_basics.checks import recording as recording_module
-from my_robot_basics.checks.inconclusive import Inconclusive, NoMessage
-from my_robot_basics.checks.recorder import Recorder
+from my_robot_basics.checks import CheckFailed, topic
+from my_robot_basics.checks.clock.inconclusive import Inconclusive, NoMessage
+from my_robot_basics.checks.recordings import recording as recording_module
+from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.topics import looks, sampling, topic_endpoints, wall_recording
 from my_robot_basics.graph.watcher import Watcher
 from nodes.running import running
 

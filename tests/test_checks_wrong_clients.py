@@ -5,7 +5,8 @@ from functools import partial
 import pytest
 from geometry_msgs.msg import Point
 from ik_clients import TARGETS, IKClient, check_asks, check_never_blocks, server
-from my_robot_basics.checks import CheckFailed, holding_server, ik, servers
+from my_robot_basics.checks import CheckFailed, ik
+from my_robot_basics.checks.services import holding_server, servers
 from std_srvs.srv import Trigger
 
 from arm_interfaces.srv import SolveIK

@@ -25,7 +25,7 @@ def blocks_of(section):
 @pytest.fixture
 def example(monkeypatch):
     """Make the check of the page, and its row."""
-    module = ModuleType('my_robot_basics.checks.example')
+    module = ModuleType('my_robot_basics.checks.topics.example')
     exec(blocks_of('A check')[0], vars(module))
     monkeypatch.setitem(sys.modules, module.__name__, module)
     (row,) = re.findall(r"`('expect_text': '.+?')`", PAGE)

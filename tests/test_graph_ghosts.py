@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.checks import callbacks
+from my_robot_basics.checks.recordings import callbacks
 from my_robot_basics.graph import actions, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom

@@ -40,7 +40,7 @@ IMPORTS = {
     'live.runner': 'import my_robot_basics.live.runner',
     'live.extension': 'import my_robot_basics.live.extension',
     'checks': f'from my_robot_basics.checks import {", ".join(checks.__all__)}',
-    'checks.tick': 'import my_robot_basics.checks.tick',
+    'checks.tick': 'import my_robot_basics.checks.clock.tick',
     'doctor': 'import my_robot_basics.doctor.main, my_robot_basics.doctor.looking',
     'ros2': 'import my_robot_basics.ros2.main, my_robot_basics.ros2.graph',
     'exchange': 'import my_robot_basics.exchange.probe, my_robot_basics.exchange.responder',

@@ -172,7 +172,7 @@ def test_an_unclean_end_of_an_executable_is_reported(
     folder, capsys, monkeypatch, handler, words, check
 ):
     monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
-    monkeypatch.setattr('my_robot_basics.checks.package_processes.END_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.checks.packages.package_processes.END_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
     script.parent.mkdir(parents=True)
     script.write_text(f'#!/usr/bin/env python3\n{UNCLEAN.format(handler=handler)}\nmain()\n')
@@ -206,7 +206,7 @@ rclpy.spin(Node('greeter'))
 
 @pytest.mark.starts
 def test_a_node_that_outlives_its_executable_is_reported(folder, monkeypatch):
-    monkeypatch.setattr('my_robot_basics.checks.package_processes.GONE_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.checks.packages.package_processes.GONE_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
     script.parent.mkdir(parents=True)
     script.write_text(f'#!{sys.executable}\n{NODE_IN_A_CHILD}')

@@ -5,7 +5,7 @@ import sys
 import types
 
 import pytest
-from my_robot_basics.checks import package_words
+from my_robot_basics.checks.packages import package_words
 from my_robot_basics.exchange.endings import RACE, is_clean, why_crashed
 from my_robot_basics.live import executables
 from my_robot_basics.live.install_faults import fault_in_install

@@ -60,8 +60,11 @@ def test_each_name_that_a_test_patches_exists(path):
 
 
 def test_a_patched_name_that_does_not_exist_is_found():
-    text = "from my_robot_basics.checks import passage\nmonkeypatch.setattr(passage, 'NEVER', 1)"
+    text = (
+        'from my_robot_basics.checks.relays import passage\n'
+        "monkeypatch.setattr(passage, 'NEVER', 1)"
+    )
     (name,) = patched(ast.parse(text))
-    assert name == 'my_robot_basics.checks.passage.NEVER'
+    assert name == 'my_robot_basics.checks.relays.passage.NEVER'
     assert not is_there(name)
-    assert is_there('my_robot_basics.checks.passage.time.time_ns')
+    assert is_there('my_robot_basics.checks.relays.passage.time.time_ns')

@@ -39,7 +39,7 @@ threading.Thread(target=intrude, daemon=True).start()
 """
 LATE = """
 import json, os, time
-from my_robot_basics.checks.delivery_experiment import Stage, watchers
+from my_robot_basics.checks.values.delivery_experiment import Stage, watchers
 
 def sockets():
     links = [f'/proc/self/fd/{fd}' for fd in os.listdir('/proc/self/fd')]

@@ -28,7 +28,7 @@ ONLY_DRAWN = {
 MODULES = {
     'checks': [
         f'my_robot_basics/my_robot_basics/{package}/*.py'
-        for package in ('checks', 'feedback', 'exchange', 'graph')
+        for package in ('checks', 'checks/*', 'feedback', 'exchange', 'graph')
     ]
     + [
         f'my_robot_basics/my_robot_basics/ros2/{each}.py'

@@ -18,7 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'nodes'))
 
 from my_robot_basics.checks import topic
-from my_robot_basics.checks.clock import SimulatedClock
+from my_robot_basics.checks.clock.clock import SimulatedClock
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from running import running

@@ -14,7 +14,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'nodes'))
 
-from my_robot_basics.checks import sampling, topic
+from my_robot_basics.checks import topic
+from my_robot_basics.checks.topics import sampling
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from running import running

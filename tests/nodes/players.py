@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rclpy
 from geometry_msgs.msg import Point
-from my_robot_basics.checks.solutions import request, solve
+from my_robot_basics.checks.values.solutions import request, solve
 from rclpy.action import ActionClient
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor

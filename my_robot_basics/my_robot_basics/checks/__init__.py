@@ -22,58 +22,84 @@ without an error has passed.
 - texts of .msg, .srv and .action files: `Definitions`
 - anything else: `expect(condition, ...)` and `fail(...)`
 - inputs that no student can guess: `inputs(label)`
+
+The code is in packages; each imports only from those before it in LAYERS:
+
+- `values`: What an answer returns or logs: angles, positions, definitions, predictions.
+- `clock`: The robot's clock, which a check drives, and what a node's answers prove about it.
+- `recordings`: When a topic's messages came and what they were: rates, stamps, positions.
+- `topics`: A topic: its endpoints, recordings on either clock, messages to it, a node's count.
+- `relays`: A node that republishes: which message comes out for which, and what it leaves out.
+- `services`: Services: the check's client of the student's server, and its server for a client.
+- `nodes`: A node's name, log and parameters, and a node that a command line starts.
+- `actions`: Actions: the check's client of the student's server, and its server for a client.
+- `arm`: What the server and the client of `/move_arm` have to do.
+- `packages`: A package of the student's, built and run, and what `arm_player` has to do.
 """
 
 import importlib
 
+LAYERS = (
+    'values',
+    'clock',
+    'recordings',
+    'topics',
+    'relays',
+    'services',
+    'nodes',
+    'actions',
+    'arm',
+    'packages',
+)
+"""The packages, lowest layer first."""
 _HOMES = {
-    'topic': 'checks.topics',
-    'relay': 'checks.relays',
-    'service': 'checks.services',
-    'action': 'checks.actions',
-    'action_server': 'checks.action_servers',
-    'serve': 'checks.servers',
-    'node_command': 'checks.node_commands',
-    'package': 'checks.packages',
-    'rosout': 'checks.logs',
-    'expect_node': 'checks.node_names',
-    'node_parameters': 'checks.parameters',
-    'rate_parameter': 'checks.rate_parameters',
+    'topic': 'checks.topics.topics',
+    'relay': 'checks.relays.relays',
+    'service': 'checks.services.services',
+    'action': 'checks.actions.actions',
+    'action_server': 'checks.actions.action_servers',
+    'serve': 'checks.services.servers',
+    'node_command': 'checks.nodes.node_commands',
+    'package': 'checks.packages.packages',
+    'rosout': 'checks.nodes.logs',
+    'expect_node': 'checks.nodes.node_names',
+    'node_parameters': 'checks.nodes.parameters',
+    'rate_parameter': 'checks.nodes.rate_parameters',
     'graph': 'graph.graphs',
-    'inputs': 'checks.seeds',
+    'inputs': 'checks.values.seeds',
     'expect': 'feedback.errors',
     'fail': 'feedback.errors',
-    'Predictions': 'checks.predictions',
-    'Definitions': 'checks.definitions',
+    'Predictions': 'checks.values.predictions',
+    'Definitions': 'checks.values.definitions',
     'CheckFailed': 'feedback.errors',
     # what these return, or are given
-    'Topic': 'checks.topics',
-    'Recording': 'checks.recording',
-    'Sample': 'checks.recording',
-    'Relay': 'checks.relays',
-    'Service': 'checks.services',
-    'Server': 'checks.servers',
-    'Action': 'checks.actions',
-    'Outcome': 'checks.actions',
-    'ServedAction': 'checks.served_action',
-    'Log': 'checks.logs',
-    'NodeCommand': 'checks.node_commands',
-    'NodeParameters': 'checks.parameters',
-    'Package': 'checks.packages',
-    'RunningExecutable': 'checks.package_processes',
-    'RateParameter': 'checks.rate_parameters',
-    'Record': 'checks.node_log',
+    'Topic': 'checks.topics.topics',
+    'Recording': 'checks.recordings.recording',
+    'Sample': 'checks.recordings.recording',
+    'Relay': 'checks.relays.relays',
+    'Service': 'checks.services.services',
+    'Server': 'checks.services.servers',
+    'Action': 'checks.actions.actions',
+    'Outcome': 'checks.actions.actions',
+    'ServedAction': 'checks.actions.served_action',
+    'Log': 'checks.nodes.logs',
+    'NodeCommand': 'checks.nodes.node_commands',
+    'NodeParameters': 'checks.nodes.parameters',
+    'Package': 'checks.packages.packages',
+    'RunningExecutable': 'checks.packages.package_processes',
+    'RateParameter': 'checks.nodes.rate_parameters',
+    'Record': 'checks.nodes.node_log',
     'GraphSnapshot': 'graph.snapshot',
-    'Stage': 'checks.delivery_experiment',
-    'StagePublisher': 'checks.delivery_experiment',
-    'StageSubscription': 'checks.delivery_experiment',
+    'Stage': 'checks.values.delivery_experiment',
+    'StagePublisher': 'checks.values.delivery_experiment',
+    'StageSubscription': 'checks.values.delivery_experiment',
 }
 _MODULES = {
-    'ik': 'checks.ik',
-    'joints': 'checks.joints',
-    'moves': 'checks.moves',
-    'player': 'checks.player',
-    'replies': 'checks.replies',
+    'ik': 'checks.services.ik',
+    'joints': 'checks.values.joints',
+    'moves': 'checks.arm.moves',
+    'player': 'checks.packages.player',
+    'replies': 'checks.arm.replies',
     'student': 'exchange.student',
 }
 

@@ -7,7 +7,8 @@ that cell runs, because it may initialise rclpy itself.
 import re
 from typing import Any
 
-from my_robot_basics.checks import tick, untouched
+from my_robot_basics.checks.clock import tick
+from my_robot_basics.checks.topics import untouched
 from my_robot_basics.session.errors import LiveError
 
 _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')

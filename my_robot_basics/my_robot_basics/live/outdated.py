@@ -7,7 +7,7 @@ between the two: then the check looks at the node of the answer before. *Validat
 import sys
 from typing import Any
 
-from my_robot_basics.checks.tick import is_check
+from my_robot_basics.checks.clock.tick import is_check
 from my_robot_basics.live import answer_end
 from my_robot_basics.session import kernel
 from my_robot_basics.session.errors import tell

@@ -26,7 +26,7 @@ _IMPORTS = (
     'std_msgs.msg',
     'my_robot_basics.exchange.probe',
     'my_robot_basics.exchange.responder',
-    'my_robot_basics.checks.topics',
+    'my_robot_basics.checks.topics.topics',
 )
 """None of these may call `classroom.enter`, start a Python thread or create a ZMQ context."""
 _ASLEEP_SEC = 10.0

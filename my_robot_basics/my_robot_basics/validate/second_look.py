@@ -24,7 +24,7 @@ BUSY_LOOK_SEC = 1.0
 STALLED_SHARE = 0.5
 """The machine counts as busy if processes wait for a processor for this part of that time."""
 LEAVE_CLOCKS = '''"""The nodes' clocks are left alone"""
-from my_robot_basics.checks import clock_use
+from my_robot_basics.checks.clock import clock_use
 
 clock_use.leave_alone()
 '''

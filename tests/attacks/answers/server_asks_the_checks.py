@@ -1,6 +1,6 @@
 """Answers with what the checks themselves compare it with."""
 
-from my_robot_basics.checks import solutions
+from my_robot_basics.checks.values import solutions
 
 
 class IKService(IKService):

@@ -1,0 +1,1 @@
+"""What the server and the client of `/move_arm` have to do."""

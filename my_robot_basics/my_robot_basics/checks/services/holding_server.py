@@ -1,0 +1,106 @@
+"""A service server that can hold its responses back, and can be absent for a while."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.service import Service
+
+from my_robot_basics.checks.services.sending import send_until_met
+from my_robot_basics.feedback.errors import expect
+
+MOST_REQUESTS, MOST_HELD = 500, 10
+"""How many requests are too many, and how many responses may be sent at once. A correct client has
+a few requests; if it got more responses at once than fit into its queue, it might lose some."""
+
+
+class HoldingServer:
+    """A service server on a node that its owner spins; it serves once `start` was called."""
+
+    def __init__(
+        self, node: Node, *, name: str, type_: type, answer: Callable[[Any], Any]
+    ) -> None:
+        """`answer(request)` returns the response."""
+        self.name, self.type, self.answer = name, type_, answer
+        self.requests: list[Any] = []
+        """All requests in order; the one that makes them MOST_REQUESTS raises CheckFailed."""
+        self.sent: list[Any] = []
+        """All responses that were sent, in order."""
+        self.starts = 0
+        """How often `start` was called."""
+        self._node = node
+        self._service: Service | None = None
+        self._holds = False
+        self._held: list[tuple[Callable[[Any, Any], None], Any, Any]] = []
+
+    def start(self) -> None:
+        """Begin to serve, for the first time or after `stop`."""
+        service = self._node.create_service(self.type, self.name, self._take)
+        send = service.send_response
+
+        def send_or_hold(response: Any, header: Any) -> None:
+            if self._holds:
+                self._held.append((send, response, header))
+            else:
+                self._send(send, response, header)
+
+        # the executor calls it with what _take returns
+        service.send_response = send_or_hold  # type: ignore[method-assign]
+        self._service = service
+        self.starts += 1
+
+    def stop(self) -> None:
+        """Stop serving: requests that have no response yet are lost, and so are those to come."""
+        if self._service is not None:
+            self._node.destroy_service(self._service)
+            self._service = None
+        self._held.clear()
+
+    def is_there(self) -> bool:
+        """Whether it serves now."""
+        return self._service is not None
+
+    def hold(self) -> None:
+        """From now on, take requests, but hold the responses back until `release`."""
+        self._holds = True
+
+    def release(self, *, reverse: bool = False) -> None:
+        """Send the responses that were held back, with `reverse` the last one first.
+
+        From now on, hold nothing back. Raises CheckFailed if there are more than MOST_HELD.
+        """
+        self._holds = False
+        self._expect_few(len(self._held), MOST_HELD + 1, f'more than {MOST_HELD} at once')
+        for send, response, header in reversed(self._held) if reverse else self._held:
+            self._send(send, response, header)
+        self._held = []
+
+    def holds_any(self) -> bool:
+        """Whether a response is held back."""
+        return bool(self._held)
+
+    def holds_one(self) -> bool:
+        """Whether just one response is held back."""
+        return len(self._held) == 1
+
+    def holds_many(self) -> bool:
+        """Whether a client repeats its request, and nearly MOST_HELD responses are held back."""
+        return len(self._held) >= MOST_HELD // 2
+
+    def _send(self, send: Callable[[Any, Any], None], response: Any, header: Any) -> None:
+        self.sent.append(response)
+        send_until_met(lambda: send(response, header))
+
+    def _take(self, request: Any, _: Any) -> Any:
+        self.requests.append(request)
+        self._expect_few(len(self.requests), MOST_REQUESTS, f'{MOST_REQUESTS} of them')
+        return self.answer(request)
+
+    def _expect_few(self, count: int, too_many: int, seen: str) -> None:
+        expect(
+            count < too_many,
+            expected=f'a request to {self.name} for each message',
+            seen=seen,
+            hint='ask once in the callback, not in a loop or a timer',
+            cause=f'{self.name} is asked again and again',
+        )

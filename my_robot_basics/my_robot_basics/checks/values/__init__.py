@@ -1,0 +1,1 @@
+"""What an answer returns or logs: angles, positions, definitions, predictions."""
