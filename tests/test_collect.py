@@ -119,8 +119,14 @@ def test_submissions_without_times_count_in_the_order_of_collecting(course, came
     assert submitted(course) == {NOTEBOOK: 'two'}
     assert before(course) == {f'1/submitted/{NOTEBOOK}': 'one'}
     write(came_in / f'ada_{TOY}.ipynb', 'one')
-    assert rows(course, came_in) == {f'ada_{TOY}.ipynb': KNOWN}
+    (row,) = collect(course, came_in)
+    assert row.outcome == KNOWN
+    place = course.folder('submitted', 'ada', TOY)
+    assert f'move gradebook/{place.relative_to(course.gradebook)} away and collect' in row.reason
     assert submitted(course) == {NOTEBOOK: 'two'}
+    place.rename(came_in.with_name('moved away'))  # as the row says
+    assert rows(course, came_in) == {f'ada_{TOY}.ipynb': NEW}
+    assert submitted(course) == {NOTEBOOK: 'one'}
 
 
 def test_an_empty_file_is_named_and_the_submission_before_it_is_kept(course, came_in):

@@ -32,8 +32,8 @@ LATE = 'has marked it as late, but no time is known, so it counts as in time: if
     ('path', 'platform'),
     [
         ('ada_LATE_18151_21012_02_joint_state.ipynb', 'Canvas'),
-        ('Lovelace_Ada_ada_4711/Late Submission - 02_joint_state.ipynb', 'Ilias'),
-        ('Lovelace_Ada_ada_4711/Late Submission - homework.zip/02_joint_state.ipynb', 'Ilias'),
+        ('Lovelace_Ada_ada_4711/Late Submission - 02_joint_state.ipynb', 'ILIAS'),
+        ('Lovelace_Ada_ada_4711/Late Submission - homework.zip/02_joint_state.ipynb', 'ILIAS'),
     ],
 )
 def test_a_platform_s_mark_of_lateness_without_a_time_is_reported(path, platform, at):

@@ -142,7 +142,10 @@ def store_submission(
         return KNOWN, _note_time(place / TIMESTAMP, each.handed_in, when)
     both = (each.handed_in, when) if each.handed_in and when else None
     if not (both and both[0] > both[1]) and came in contents_of_earlier(shelf):
-        return KNOWN, 'the same as an earlier one, which a later one has replaced'
+        return KNOWN, (
+            'the same as an earlier one, which a later one has replaced; if this one counts, '
+            f'move {_path_in_messages(place, course)} away and collect it again'
+        )
     if both and both[0] <= both[1]:
         kept = put_numbered(
             within(

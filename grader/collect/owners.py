@@ -64,7 +64,7 @@ def late_remark(each: Incoming, owner: Owner) -> str:
     is_marked = label.platform.marks_late_files and strip_late_mark(below) != below
     if label.is_late or is_marked:
         return (
-            f'{label.platform.name.capitalize()} has marked it as late, but no time is known, so '
+            f'{label.platform.title} has marked it as late, but no time is known, so '
             "it counts as in time: if the files' times are right, collect it with --file-times"
         )
     return ''

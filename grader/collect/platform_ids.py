@@ -89,7 +89,7 @@ def _problem(each: MatchedFile, numbers: set[str]) -> str:
     label = _label_with_number(each)
     if label is None or numbers == {label.number}:
         return ''
-    platform, who = label.platform.name.capitalize(), each.student_id
+    platform, who = label.platform.title, each.student_id
     others = ', '.join(sorted(numbers - {label.number}))
     return (
         f"the name {who} has {platform}'s number {label.number} here and {others} elsewhere: "

@@ -34,6 +34,11 @@ class Platform:
     marks_late_files: bool = False
     """Whether it marks a file in such a folder that is handed in late."""
 
+    @property
+    def title(self) -> str:
+        """What people call it."""
+        return 'ILIAS' if self.name == 'ilias' else self.name.capitalize()
+
 
 # Each form matches as little as possible before `rest`, which the student chose.
 PLATFORMS = (
