@@ -9,6 +9,7 @@ from my_robot_basics.doctor import inside
 from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.live import exercise, troubles
 from my_robot_basics.live.panel import Panel
+from my_robot_basics.two_link_kinematics import inverse_kinematics
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -48,6 +49,15 @@ def test_an_exception_inside_a_library_is_reported_with_the_librarys_line():
     except ValueError as error:
         troubles.remember('/a', error.with_traceback(error.__traceback__.tb_next))
     assert ', in raw_decode: ' in troubles.last_raised('/a')
+    troubles.forget('/a')
+
+
+def test_an_exception_of_the_courses_own_function_is_reported_with_the_line_that_calls_it():
+    try:
+        inverse_kinematics(9.0, 9.0)
+    except ValueError as error:
+        troubles.remember('/a', error)
+    assert ': inverse_kinematics(9.0, 9.0))' in troubles.last_raised('/a')
     troubles.forget('/a')
 
 

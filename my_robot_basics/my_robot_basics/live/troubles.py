@@ -26,7 +26,11 @@ _fields: dict[str, tuple[str, str]] = {}
 _of_services: dict[tuple[str, str], str] = {}
 """The last exception of a service's callback, by the node's and the service's full names."""
 _NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parent))
-_OF_A_LIBRARY = tuple(sysconfig.get_path(kind) for kind in ('stdlib', 'purelib', 'platlib'))
+_OF_A_LIBRARY = (
+    *(sysconfig.get_path(kind) for kind in ('stdlib', 'purelib', 'platlib')),
+    f'{Path(__file__).parents[1]}/',
+)
+"""Folders of code that a student calls, the course's own too: the line of the call says more."""
 
 
 def where_and_what(error: BaseException) -> tuple[str, str]:
