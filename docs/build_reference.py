@@ -12,11 +12,9 @@ from pathlib import Path
 import pdoc
 
 PAGES = ('my_robot_basics.checks', 'my_robot_basics.live')
-STUDENT = 'my_robot_basics.exchange.student'
-"""What `student` of the checks is: a page of its own."""
-NAMED = ('joints$',)
-"""Modules beside it of which grade cells call the functions."""
-OTHERS = rf'!my_robot_basics\.(?:checks|live)\.(?!{"|".join(NAMED)})'
+CALLED = 'my_robot_basics.exchange.student', 'my_robot_basics.checks.values.joints'
+"""Modules of which grade cells call the functions: a page of its own for each."""
+OTHERS = rf'!my_robot_basics\.(?:checks|live)\.(?!{CALLED[1].partition(".checks.")[2]}$)'
 """The modules that hold all this, and much that is no one else's business."""
 
 
@@ -27,7 +25,7 @@ def build(folder: Path) -> None:
         for public in page.__all__:  # they are imported on demand, and pdoc looks at what is there
             setattr(page, public, getattr(page, public))
     pdoc.render.configure(show_source=False)
-    pdoc.pdoc(*PAGES, STUDENT, OTHERS, output_directory=folder)
+    pdoc.pdoc(*PAGES, *CALLED, OTHERS, output_directory=folder)
 
 
 if __name__ == '__main__':

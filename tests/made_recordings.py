@@ -3,7 +3,8 @@
 import math
 
 from builtin_interfaces.msg import Time
-from my_robot_basics.checks.recordings.recording import Recording, Sample
+from my_robot_basics.checks.recordings.recorded_messages import Sample
+from my_robot_basics.checks.recordings.recording import Recording
 from sensor_msgs.msg import JointState
 
 START_SEC = 1000.0

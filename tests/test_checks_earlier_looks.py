@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 from my_robot_basics.checks import CheckFailed
-from my_robot_basics.checks.recordings.recording import Recording, Sample
+from my_robot_basics.checks.recordings.recorded_messages import Sample
+from my_robot_basics.checks.recordings.recording import Recording
 from my_robot_basics.checks.topics import earlier_looks
 from my_robot_basics.checks.topics.earlier_looks import Look, Wanted, look_once
 from my_robot_basics.feedback import hidden

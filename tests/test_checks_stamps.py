@@ -5,7 +5,8 @@ from my_robot_basics.checks import CheckFailed, topic
 from my_robot_basics.checks.clock import own_clock
 from my_robot_basics.checks.clock.clock import Inconclusive
 from my_robot_basics.checks.clock.own_clock import _ahead_sec
-from my_robot_basics.checks.recordings.recording import Recording, Sample
+from my_robot_basics.checks.recordings.recorded_messages import Sample
+from my_robot_basics.checks.recordings.recording import Recording
 from my_robot_basics.feedback.errors import Starved
 from nodes.running import imported, running
 from rclpy.time import Time

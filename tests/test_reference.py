@@ -54,6 +54,9 @@ def test_the_reference_pages_can_be_built(tmp_path):
         text = (tmp_path / f'{page.__name__.replace(".", "/")}.html').read_text(encoding='utf-8')
         names = [n for n in page.__all__ if not inspect.ismodule(getattr(page, n))]
         assert [name for name in names if f'id="{name}"' not in text] == []
+        assert page is live or 'id="RecordedMessages.rate_hz"' in text
+    joints = (tmp_path / 'my_robot_basics/checks/values/joints.html').read_text(encoding='utf-8')
+    assert 'id="agree"' in joints
     student = (tmp_path / 'my_robot_basics/exchange/student.html').read_text(encoding='utf-8')
     assert 'id="call"' in student
     assert 'id="set_use_sim_time"' not in student

@@ -75,7 +75,8 @@ _HOMES = {
     # what these return, or are given
     'Topic': 'checks.topics.topics',
     'Recording': 'checks.recordings.recording',
-    'Sample': 'checks.recordings.recording',
+    'RecordedMessages': 'checks.recordings.recorded_messages',
+    'Sample': 'checks.recordings.recorded_messages',
     'Relay': 'checks.relays.relays',
     'Service': 'checks.services.services',
     'Server': 'checks.services.servers',

@@ -2,19 +2,16 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 from my_robot_basics.drawing.figures import png
-
-if TYPE_CHECKING:
-    from my_robot_basics.checks.recordings.recording import Recording
 
 SHOWN_PERIODS = 25
 # from Okabe and Ito's palette, which colour-blind readers can tell apart, too
 SEEN, EXPECTED = '#d55e00', '#0072b2'
 
 
-def plot_arrivals(recording: 'Recording', *, hz: float | None = None) -> bytes:
+def plot_arrivals(recording: RecordedMessages, *, hz: float | None = None) -> bytes:
     """Plot when the messages of a recording arrived; with `hz`, also when they should have."""
     from matplotlib.figure import Figure  # slow to import (1 s), and rarely needed
 

@@ -1,15 +1,13 @@
 """The failure message for a recording that does not have the expected rate."""
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
 from my_robot_basics.checks.recordings import periods, pictures, rates, starved
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 from my_robot_basics.checks.recordings.sleeping_callbacks import why_too_slow
 from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
-
-if TYPE_CHECKING:
-    from my_robot_basics.checks.recordings.recording import Recording
 
 MOSTLY_PART = 0.1
 """If a node only pauses sometimes, the median gap differs from the period by at most this part."""
@@ -21,7 +19,7 @@ EXTRA_LEAST = 2
 AT_ONCE = 'several messages arrive at once'
 
 
-def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
+def fail_rate(recording: RecordedMessages, hz: float) -> NoReturn:
     """Raise CheckFailed with the rate of the recording and a picture of the arrivals."""
     seen, cause, hint = _explanation(recording, hz)
     hint = why_too_slow(recording, hz) or hint
@@ -31,7 +29,7 @@ def fail_rate(recording: 'Recording', hz: float) -> NoReturn:
     fail(expected=expected, seen=seen, hint=hint, cause=cause, picture=picture, doubt=doubt)
 
 
-def _explanation(recording: 'Recording', hz: float) -> tuple[str, str, str]:
+def _explanation(recording: RecordedMessages, hz: float) -> tuple[str, str, str]:
     """Return what was seen, its cause, and what to try, for the first fault that fits."""
     over = f'over {recording.seconds:.3g} s ({_messages(recording)})'
     if every := rates.leaves_out(recording):
@@ -75,7 +73,7 @@ def _explanation(recording: 'Recording', hz: float) -> tuple[str, str, str]:
     return seen, cause, 'the timer period is in seconds, and period = 1 / rate'
 
 
-def _has_extra(recording: 'Recording', hz: float) -> bool:
+def _has_extra(recording: RecordedMessages, hz: float) -> bool:
     """Whether the rate is right without the messages that come at once with another one."""
     gaps = np.diff(rates.times_of(recording))
     extra = int(np.sum(gaps < rates.AT_ONCE_SEC))
@@ -84,22 +82,22 @@ def _has_extra(recording: 'Recording', hz: float) -> bool:
     return extra >= EXTRA_LEAST and is_right and _is_mostly(recording, hz)
 
 
-def _is_right_in_words(recording: 'Recording', hz: float) -> bool:
+def _is_right_in_words(recording: RecordedMessages, hz: float) -> bool:
     """Whether the measured rate and the expected one are the same text once rounded."""
     return _hz(_measured_hz(recording, hz)) == _hz(hz)
 
 
-def _is_uneven(recording: 'Recording') -> bool:
+def _is_uneven(recording: RecordedMessages) -> bool:
     return recording.clock == 'wall' and rates.is_uneven(recording, recording.rate_hz)
 
 
-def _is_mostly(recording: 'Recording', hz: float) -> bool:
+def _is_mostly(recording: RecordedMessages, hz: float) -> bool:
     """Whether most messages came one period after the one before."""
     gaps = np.diff(rates.times_of(recording))
     return bool(len(gaps)) and bool(abs(np.median(gaps) * hz - 1.0) <= MOSTLY_PART)
 
 
-def _measured_hz(recording: 'Recording', hz: float) -> float:
+def _measured_hz(recording: RecordedMessages, hz: float) -> float:
     low, high = rates.certain_range(recording)
     if low <= high:
         return 2.0 / (low + high)
@@ -108,11 +106,11 @@ def _measured_hz(recording: 'Recording', hz: float) -> float:
     return recording.rate_hz
 
 
-def _hz_over(recording: 'Recording', rate_hz: float) -> str:
+def _hz_over(recording: RecordedMessages, rate_hz: float) -> str:
     return f'{_rounded(rate_hz)} Hz over {recording.seconds:.3g} s ({_messages(recording)})'
 
 
-def _messages(recording: 'Recording') -> str:
+def _messages(recording: RecordedMessages) -> str:
     n = len(recording.messages)
     return f'{n} message{"" if n == 1 else "s"}'
 

@@ -1,14 +1,11 @@
 """Whether a recording has a given rate, and whether that is certain."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from my_robot_basics.checks.recordings import periods
-
-if TYPE_CHECKING:
-    from my_robot_basics.checks.recordings.recording import Recording
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 
 TOLERANCE = 0.02
 """How far a rate may differ from the expected one, as a part of it."""
@@ -19,11 +16,6 @@ DOUBTFUL = 0.01, 0.04
 decide: a busy machine may be the cause."""
 LARGEST_GAP_PERIODS = 1.75
 """A longer gap between two messages on the wall clock is a pause, in periods of the rate."""
-SILENT_PERIODS = 2.75
-"""A longer silence at the end, in periods, means that the messages have ended. It is more than one
-period because the last message may still be on its way."""
-LONGER_PAUSE = 1.5
-"""The silence at the end must also be this many times as long as the longest gap before it."""
 GAP_SLACK_SEC = 0.05
 """How much longer than a period a gap may always be on the wall clock."""
 UNEVEN_PART = 0.25
@@ -40,7 +32,7 @@ FEWEST = 2
 """How many messages after the first one show whether they are evenly spaced."""
 
 
-def is_even(recording: 'Recording') -> bool:
+def is_even(recording: RecordedMessages) -> bool:
     """Whether a timer of one period explains every arrival, within a step of the clock."""
     if len(recording.messages) < FEWEST:
         return False
@@ -48,7 +40,7 @@ def is_even(recording: 'Recording') -> bool:
     return low <= high
 
 
-def is_nearly_even(recording: 'Recording') -> bool:
+def is_nearly_even(recording: RecordedMessages) -> bool:
     """Whether one period explains every arrival within a quarter of it, or within a step.
 
     Long and short gaps that alternate are not nearly even.
@@ -59,14 +51,14 @@ def is_nearly_even(recording: 'Recording') -> bool:
     return low <= high and not periods.come_by_turns(times, _slack_sec(recording))
 
 
-def leaves_out(recording: 'Recording') -> int:
+def leaves_out(recording: RecordedMessages) -> int:
     """Which message is missing regularly on the robot's clock (10: every tenth one), or 0."""
     if recording.clock != 'simulated':
         return 0
     return periods.left_out_every(times_of(recording), _slack_sec(recording))
 
 
-def pattern_of(recording: 'Recording') -> periods.Pattern | None:
+def pattern_of(recording: RecordedMessages) -> periods.Pattern | None:
     """The messages' repeating pattern on the robot's clock that no single timer makes, or None.
 
     They come several at once, or far from evenly. The proof (the recording with finer steps) must
@@ -86,13 +78,13 @@ def pattern_of(recording: 'Recording') -> periods.Pattern | None:
     return seen if is_same and is_no_timers else None
 
 
-def pattern_in(recording: 'Recording') -> periods.Pattern | None:
+def pattern_in(recording: RecordedMessages) -> periods.Pattern | None:
     """The repeating pattern of one recording; the size of its clock steps may have caused it."""
     times_sec, seconds = times_of(recording), recording.seconds
     return periods.pattern_of(times_sec, recording.step_sec, seconds=seconds)
 
 
-def is_certain(recording: 'Recording', hz: float) -> bool:
+def is_certain(recording: RecordedMessages, hz: float) -> bool:
     """Whether the recording on the robot's clock decides without doubt if a timer has `hz`.
 
     It does if all gaps are equal, if messages are left out regularly, if they have a pattern that
@@ -110,7 +102,7 @@ def is_certain(recording: 'Recording', hz: float) -> bool:
     return low <= high and not _holds(low, high, hz)
 
 
-def has_rate(recording: 'Recording', hz: float) -> bool:
+def has_rate(recording: RecordedMessages, hz: float) -> bool:
     """Whether messages came at `hz`, within ±2 %, and evenly.
 
     On the wall clock, the ±2 % are of the period that the timer or loop was given (see
@@ -137,7 +129,7 @@ def _holds(low: float, high: float, hz: float) -> bool:
     return low <= longest and shortest <= high
 
 
-def is_steady(recording: 'Recording', hz: float) -> bool:
+def is_steady(recording: RecordedMessages, hz: float) -> bool:
     """Whether messages came evenly at about `hz`, without pauses, until the recording's end.
 
     For recordings on the wall clock.
@@ -147,13 +139,13 @@ def is_steady(recording: 'Recording', hz: float) -> bool:
     return goes_on and not is_uneven(recording, hz)
 
 
-def is_doubtful(recording: 'Recording', hz: float) -> bool:
+def is_doubtful(recording: RecordedMessages, hz: float) -> bool:
     """Whether a longer recording is needed: the wall clock's period is close to the tolerance."""
     low, high = DOUBTFUL
     return recording.clock == 'wall' and low < abs(off_intended(recording, hz)) <= high
 
 
-def off_intended(recording: 'Recording', hz: float) -> float:
+def off_intended(recording: RecordedMessages, hz: float) -> float:
     """How far the rate of `periods.intended_period` is from `hz`: 0.01 if it is 1 % too fast."""
     return (
         1.0 / (hz * periods.intended_period(times_of(recording))) - 1.0
@@ -162,7 +154,7 @@ def off_intended(recording: 'Recording', hz: float) -> float:
     )
 
 
-def certain_range(recording: 'Recording') -> tuple[float, float]:
+def certain_range(recording: RecordedMessages) -> tuple[float, float]:
     """The least and greatest period (s) that explain both a recording and its proof.
 
     The first is above the second if no period does.
@@ -175,7 +167,7 @@ def certain_range(recording: 'Recording') -> tuple[float, float]:
     return max(low for low, _ in ranges), min(high for _, high in ranges)
 
 
-def is_uneven(recording: 'Recording', hz: float, slack_sec: float = 0.0) -> bool:
+def is_uneven(recording: RecordedMessages, hz: float, slack_sec: float = 0.0) -> bool:
     """Whether at least half of the gaps are far from the period of `hz`, or the gaps alternate.
 
     A busy machine makes single messages late, and thus the gap after them short; that is not
@@ -186,14 +178,14 @@ def is_uneven(recording: 'Recording', hz: float, slack_sec: float = 0.0) -> bool
     return bool(is_far) or periods.come_by_turns(times, slack_sec)
 
 
-def times_of(recording: 'Recording') -> np.ndarray:
+def times_of(recording: RecordedMessages) -> np.ndarray:
     """Arrival times in s, first the 0.0 of the message at which it begins: shape (n + 1,)."""
     return np.array([0.0, *(sample.time_sec for sample in recording.messages)])
 
 
-def _period_range(recording: 'Recording') -> tuple[float, float]:
+def _period_range(recording: RecordedMessages) -> tuple[float, float]:
     return periods.possible_periods(times_of(recording), _slack_sec(recording))
 
 
-def _slack_sec(recording: 'Recording') -> float:
+def _slack_sec(recording: RecordedMessages) -> float:
     return 1.001 * recording.step_sec

@@ -1,10 +1,7 @@
-"""The messages recorded on a topic, and the assertions of a check about them."""
+"""A recording of a topic: the assertions of a check about its messages."""
 
-import itertools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
 
 from my_robot_basics.checks.recordings import (
     callbacks,
@@ -15,6 +12,7 @@ from my_robot_basics.checks.recordings import (
     rates,
     stamps,
 )
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 from my_robot_basics.checks.values import joints
 from my_robot_basics.feedback.errors import CheckFailed, expect, shorten, show
 
@@ -24,73 +22,12 @@ LONGER_LOOK_SEC = 8.0
 LONGEST_LOOK_SEC = 12.0
 
 
-@dataclass(frozen=True)
-class Sample:
-    """One message and when it was sent."""
-
-    message: Any
-    """The message as it arrived."""
-    time_sec: float
-    """When it was sent, on the recording's clock, since the recording began."""
-    source_time_sec: float
-    """When it was sent, on the wall clock, since the epoch: DDS's source timestamp."""
-
-
 @dataclass(frozen=True, kw_only=True)
-class Recording:
-    """The messages of a topic over `seconds`, which begin at a message that does not count."""
+class Recording(RecordedMessages):
+    """The messages of a topic over `seconds`, and what a check may assert about them."""
 
-    topic_name: str
-    messages: tuple[Sample, ...]
-    """Oldest first; the one at which the recording began is not among them."""
-    clock: Literal['simulated', 'wall']
-    """The clock of `seconds` and of the samples' `time_sec`."""
-    publishers: tuple[str, ...]
-    """Full names of the nodes that publish on the topic, one for each publisher."""
-    seconds: float
-    start_sec: float
-    """When the recording began, on its clock, since the epoch."""
-    step_sec: float = 0.0
-    """How far each tick moved the simulated clock; 0 on the wall clock."""
-    note: str = ''
-    """A remark for the feedback that costs no points."""
-    late_sec: float = 0.0
-    """The longest delay of the recording itself by a busy machine: a node may be as late."""
-    was_busy: bool = False
-    """Whether processes waited for a processor for most of the recording."""
-    is_makeshift: bool = False
-    """Whether it is on the wall clock only because a busy machine was too slow for the robot's."""
-    proof: 'Recording | None' = field(default=None, repr=False)
-    """A second recording on the simulated clock, with steps of another size."""
     look_again: Callable[[float], 'Recording'] | None = field(default=None, repr=False)
     """Makes another recording of that many seconds on the wall clock."""
-
-    @property
-    def rate_hz(self) -> float:
-        """Messages per second, from the beginning to the last message; 0 without a message."""
-        return len(self.messages) / self.messages[-1].time_sec if self.messages else 0.0
-
-    @property
-    def largest_gap_sec(self) -> float:
-        """The longest gap between two messages, in s; infinite without a message."""
-        times = [0.0, *(sample.time_sec for sample in self.messages)]
-        return max((b - a for a, b in itertools.pairwise(times)), default=math.inf)
-
-    @property
-    def silent_sec(self) -> float:
-        """The time between the last message and the end of the recording."""
-        return self.seconds - self.messages[-1].time_sec if self.messages else self.seconds
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether the silence at the end is so long that the messages seem to have ended."""
-        return not self.messages or self.silent_sec * self.rate_hz > rates.SILENT_PERIODS
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the messages have ended, and the silence is longer than any earlier pause."""
-        is_longest = self.silent_sec > rates.LONGER_PAUSE * self.largest_gap_sec
-        return not self.messages or (self.has_ended and is_longest)
 
     def assert_rate(self, hz: float) -> None:
         """There is one publisher, and it sends `hz` messages per second, evenly, within ±2 %.
@@ -146,7 +83,8 @@ class Recording:
 
     def assert_stamps(self) -> None:
         """Every stamp is the time of the node's clock at publication. Raises CheckFailed."""
-        stamps.check_stamps(self, self._messages_with('header'))
+        messages, may_look_again = self._messages_with('header'), self.look_again is not None
+        stamps.check_stamps(self, messages, may_look_again=may_look_again)
 
     def plot(self, hz: float | None = None) -> None:
         """Plot when the messages arrived and, with `hz`, when they should have arrived."""

@@ -1,15 +1,11 @@
 """Name a sleep in a callback, if a node is slower than it should be."""
 
-from typing import TYPE_CHECKING
-
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.hidden import student_text
 
-if TYPE_CHECKING:
-    from my_robot_basics.checks.recordings.recording import Recording
 
-
-def why_too_slow(recording: 'Recording', wanted_hz: float) -> str:
+def why_too_slow(recording: RecordedMessages, wanted_hz: float) -> str:
     """What to try if a callback sleeps, and the rate is too low; '' if that is not the cause.
 
     On the robot's clock, each tick waits for callbacks: there, the cause is another one.

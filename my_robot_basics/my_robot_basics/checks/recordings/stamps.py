@@ -7,7 +7,7 @@ nothing: then `own_clock` moves the node's clock ahead, and its stamps must foll
 import itertools
 import statistics
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from my_robot_basics.checks.clock.own_clock import (
     EXPECTED,
@@ -17,11 +17,9 @@ from my_robot_basics.checks.clock.own_clock import (
     nanoseconds,
 )
 from my_robot_basics.checks.recordings.rates import AT_ONCE_SEC, ONCE
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 from my_robot_basics.checks.values.content import content
 from my_robot_basics.feedback.errors import CheckFailed, Starved, fail
-
-if TYPE_CHECKING:
-    from my_robot_basics.checks.recordings.recording import Recording
 
 MOST_OFF_SEC = {'simulated': 0.5, 'wall': 1.0}
 """How far each stamp may be from the time of publication, by clock."""
@@ -29,10 +27,10 @@ USUAL_OFF_SEC = 0.15
 """How far the median stamp may be: less than a period at 5 Hz, to detect the preceding stamp."""
 
 
-def check_stamps(recording: 'Recording', messages: Sequence) -> None:
+def check_stamps(recording: RecordedMessages, messages: Sequence, *, may_look_again: bool) -> None:
     """Each stamp is set, advances, and is near the time of publication. Raises CheckFailed.
 
-    If the recording can be repeated (`look_again`), the stamps must also be of the node's clock.
+    With `may_look_again`, the node still runs: its stamps must also be of the node's clock.
     """
     stamps_ns = [nanoseconds(message.header.stamp) for message in messages]
     if 0 in stamps_ns:
@@ -57,11 +55,11 @@ def check_stamps(recording: 'Recording', messages: Sequence) -> None:
     for off in wrong:
         _fail(f'a stamp {abs(off):.1f} s {"ahead of" if off > 0.0 else "behind"} it', doubt)
     # on a busy machine, the driven clock may show the computer's time by chance
-    if recording.look_again is not None and is_wall:
+    if may_look_again and is_wall:
         expect_to_follow(recording.topic_name, type(messages[0]), recording.publishers)
 
 
-def _come_in_pairs(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
+def _come_in_pairs(recording: RecordedMessages, stamps_ns: Sequence[int]) -> bool:
     """Whether messages come in pairs with one stamp each.
 
     On the robot's clock, they must also be equal: different messages of one tick share a stamp.
@@ -82,7 +80,7 @@ def _are_alike(message: Any, other: Any) -> bool:
     return content(message) == content(other)
 
 
-def _advance(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
+def _advance(recording: RecordedMessages, stamps_ns: Sequence[int]) -> bool:
     sent = [sample.time_sec for sample in recording.messages]
     is_driven = recording.clock == 'simulated'
     return all(
@@ -93,7 +91,7 @@ def _advance(recording: 'Recording', stamps_ns: Sequence[int]) -> bool:
     )
 
 
-def _offs(recording: 'Recording', stamps_ns: Sequence[int]) -> list[float]:
+def _offs(recording: RecordedMessages, stamps_ns: Sequence[int]) -> list[float]:
     on_wall = recording.clock == 'wall'
     sent = [
         sample.source_time_sec if on_wall else recording.start_sec + sample.time_sec

@@ -1,13 +1,9 @@
 """Whether a busy machine may be the cause of a wrong rate on the wall clock."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from my_robot_basics.checks.recordings import periods
-
-if TYPE_CHECKING:
-    from my_robot_basics.checks.recordings.recording import Recording
+from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 
 LATE_SEC = 0.05
 """A recording that the machine delayed by at least this much excuses a delay of the node."""
@@ -29,7 +25,7 @@ NEAR_LEAST = 0.75
 its clock every 10 ms may publish every 60 ms instead of 50."""
 
 
-def may_be_starved(recording: 'Recording', hz: float) -> bool:
+def may_be_starved(recording: RecordedMessages, hz: float) -> bool:
     """Whether a node with the rate `hz` may produce this recording on a busy machine.
 
     A busy machine makes messages late, each by a different time, but not more frequent. So it
@@ -60,7 +56,7 @@ def may_be_starved(recording: 'Recording', hz: float) -> bool:
     return bool(is_excused and not is_another and not periods.come_by_turns(times))
 
 
-def _is_near(recording: 'Recording', hz: float) -> bool:
+def _is_near(recording: RecordedMessages, hz: float) -> bool:
     """Whether the rate is nearly right; also if only the first gap makes it too high.
 
     The message at which the recording begins may have been late: then the others seem early.

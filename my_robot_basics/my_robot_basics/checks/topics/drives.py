@@ -4,7 +4,8 @@ import itertools
 
 from my_robot_basics.checks.clock.inconclusive import NoMessage
 from my_robot_basics.checks.recordings import rates
-from my_robot_basics.checks.recordings.recording import Recording, Sample
+from my_robot_basics.checks.recordings.recorded_messages import Sample
+from my_robot_basics.checks.recordings.recording import Recording
 from my_robot_basics.checks.topics.driven_topic import DrivenTopic
 
 SECONDS_ENOUGH = 10.0

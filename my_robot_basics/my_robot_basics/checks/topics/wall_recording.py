@@ -5,8 +5,9 @@ import time
 from my_robot_basics.checks.clock.clock import ahead_sec
 from my_robot_basics.checks.clock.inconclusive import Inconclusive, NoMessage, TooSlow
 from my_robot_basics.checks.recordings import rates
+from my_robot_basics.checks.recordings.recorded_messages import Sample
 from my_robot_basics.checks.recordings.recorder import Recorder
-from my_robot_basics.checks.recordings.recording import Recording, Sample
+from my_robot_basics.checks.recordings.recording import Recording
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import is_quiet
 from my_robot_basics.graph.stop_reasons import what_raised
