@@ -96,9 +96,9 @@ class ServedAction(ScriptedActionServer):
         """The client cancels that goal for True on `cancelled_on`. Raises CheckFailed."""
         self.client.answering()  # once more: it may have answered before it knew of its goal
         self.say_obstacle(is_there=True)
-        late = bool(self.client.mute)  # for a reason that other checks tell
+        is_late = bool(self.client.mute)  # for a reason that other checks tell
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self._spin_until(lambda: bool(goal.cancels), AGAIN_SEC, may_sleep=late):
+            if self._spin_until(lambda: bool(goal.cancels), AGAIN_SEC, may_sleep=is_late):
                 self._cancelled_sec = max(self._cancelled_sec, goal.cancelled_sec())
                 return
             # the message may have arrived before the client knew that its goal was accepted
