@@ -73,7 +73,7 @@ print(pathlib.Path('/proc/net/unix').read_text().count('@'))
 """Prints the homes and temporary files, the processes' owners, the number of abstract sockets."""
 BUILD = """
 import os, pathlib, shutil, subprocess
-from my_robot_basics.live.workspace import BUILD, make_workspace
+from my_robot_basics.live.packages.workspace import BUILD, make_workspace
 make_workspace()
 words = ['bash', '--rcfile', os.environ['COURSE_TERMINAL'], '-i', '-c']
 words.append(f'{BUILD} >&2 && ros2 pkg prefix my_robot_basics')

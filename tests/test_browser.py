@@ -22,7 +22,7 @@ from lab_browser import (
     wait_until_open,
     warnings,
 )
-from my_robot_basics.live.workspace import make_workspace
+from my_robot_basics.live.packages.workspace import make_workspace
 from playwright.sync_api import expect
 
 pytestmark = drives_chromium

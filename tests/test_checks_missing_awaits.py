@@ -7,7 +7,7 @@ import pytest
 from arm_checks import failures, rejects
 from my_robot_basics.checks import CheckFailed, action, moves
 from my_robot_basics.feedback import hidden
-from my_robot_basics.live import unawaited
+from my_robot_basics.live.nodes import unawaited
 from nodes.running import imported
 
 from arm_interfaces.action import MoveArm

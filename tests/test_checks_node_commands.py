@@ -9,7 +9,7 @@ from my_robot_basics.checks import CheckFailed, node_command
 from my_robot_basics.checks.nodes.started_node import started_node
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.watcher import Watcher
-from my_robot_basics.live import commands
+from my_robot_basics.live.packages import commands
 from my_robot_basics.ros2 import command_line
 from rclpy.node import Node
 from sensor_msgs.msg import JointState

@@ -14,7 +14,7 @@ node = Node('idle')
 """
 NOTHING_COMES = {
     'nothing': ('', 0, []),
-    'our own threads': ('import my_robot_basics.live.runner', 0, []),
+    'our own threads': ('import my_robot_basics.live.nodes.runner', 0, []),
     'a node without a timer': (NODE, 0, ['/idle']),
     'a node of the course': (NODE.replace('idle', '_idle'), 0, []),
     'a timer that is cancelled': (NODE + 'node.create_timer(1, print).cancel()', 0, ['/idle']),

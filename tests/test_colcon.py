@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from colcon_terminal import bash
 from fresh_machine import programs_without_compilers
-from my_robot_basics.live import workspace
+from my_robot_basics.live.packages import workspace
 from my_robot_basics.session import build_tools
 from ros2_command import NODES, own_domain
 

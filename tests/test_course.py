@@ -173,7 +173,7 @@ def test_a_path_to_collect_is_relative_to_the_caller_s_folder(machine):
 @pytest.mark.parametrize(
     ('verb', 'module', 'folder'),
     [
-        ('workspace', 'live.workspace', '{root}'),
+        ('workspace', 'live.packages.workspace', '{root}'),
         ('ros-shell', 'ros2.shell', '/'),
         ('validate', 'validate', '/'),
     ],

@@ -2,7 +2,7 @@
 
 import ament_index_python
 import pytest
-from my_robot_basics.live.dependencies import undeclared_dependencies
+from my_robot_basics.live.packages.dependencies import undeclared_dependencies
 from my_robot_basics.session import package_files
 from package_maker import NODE, PACKAGE, make_package
 

@@ -7,7 +7,7 @@ import pytest
 from jupyter_client.manager import start_new_kernel
 from my_robot_basics.doctor.main import main
 from my_robot_basics.live import run, stop, why
-from my_robot_basics.live.doctor import NoSuchName
+from my_robot_basics.live.pictures.doctor import NoSuchName
 from nodes import patient_services
 from nodes.patient import LISTENER, TALKER, TOPIC, node_class
 

@@ -9,7 +9,8 @@ import pytest
 from diagnosed import TIMEOUT_SEC, wait_for, wait_for_finding
 from my_robot_basics.doctor import inside
 from my_robot_basics.doctor.diagnosing import diagnose
-from my_robot_basics.live import run, stop, troubles
+from my_robot_basics.live import run, stop
+from my_robot_basics.live.output import troubles
 from my_robot_basics.session import classroom, domain
 from my_robot_basics.session.neighbours import nodes_here
 from nodes.patient import process

@@ -7,7 +7,7 @@ import nbformat
 import pytest
 from my_robot_basics.doctor import as_html
 from my_robot_basics.drawing.described import png_output
-from my_robot_basics.live import panel
+from my_robot_basics.live.output import panel
 from nbformat.v4 import new_output
 
 from grader.authoring import edition_outputs

@@ -37,7 +37,7 @@ print(json.dumps([before, state()]))
 """
 IMPORTS = {
     'live': f'from my_robot_basics.live import {", ".join(live.__all__)}',
-    'live.runner': 'import my_robot_basics.live.runner',
+    'live.nodes.runner': 'import my_robot_basics.live.nodes.runner',
     'live.extension': 'import my_robot_basics.live.extension',
     'checks': f'from my_robot_basics.checks import {", ".join(checks.__all__)}',
     'checks.tick': 'import my_robot_basics.checks.clock.tick',
@@ -45,7 +45,7 @@ IMPORTS = {
     'ros2': 'import my_robot_basics.ros2.main, my_robot_basics.ros2.graph',
     'exchange': 'import my_robot_basics.exchange.probe, my_robot_basics.exchange.responder',
 }
-SETTING_UP = 'from my_robot_basics.live import runner; del shell.kernel; runner.set_up()'
+SETTING_UP = 'from my_robot_basics.live.nodes import runner; del shell.kernel; runner.set_up()'
 
 
 def states(imports):

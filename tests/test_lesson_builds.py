@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from colcon_terminal import bash
 from fresh_machine import programs_without_compilers
-from my_robot_basics.live import workspace
+from my_robot_basics.live.packages import workspace
 from my_robot_basics.session import build_tools
 
 ROOT = Path(__file__).parents[1]

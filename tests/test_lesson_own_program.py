@@ -6,8 +6,8 @@ import nbformat
 import pytest
 from answered import answered, read
 from colcon_terminal import bash
-from my_robot_basics.live.entry_points import add_entry_point
-from my_robot_basics.live.workspace import make_workspace
+from my_robot_basics.live.packages.entry_points import add_entry_point
+from my_robot_basics.live.packages.workspace import make_workspace
 from nbclient import NotebookClient
 
 LESSON = '03_publisher'

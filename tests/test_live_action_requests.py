@@ -5,8 +5,9 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.live import action_requests, runner
-from my_robot_basics.live.destroying import destroy
+from my_robot_basics.live.nodes import runner
+from my_robot_basics.live.nodes.destroying import destroy
+from my_robot_basics.live.patches import action_requests
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor

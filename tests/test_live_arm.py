@@ -12,7 +12,7 @@ from matplotlib.image import imread
 from matplotlib.transforms import Bbox
 from my_robot_basics.drawing.arm import ArmPicture, describe
 from my_robot_basics.live import show_arm
-from my_robot_basics.live.follow import ArmView, what_is_wrong
+from my_robot_basics.live.pictures.follow import ArmView, what_is_wrong
 from sensor_msgs.msg import JointState
 
 

@@ -3,8 +3,9 @@
 import random
 
 import pytest
-from my_robot_basics.live import branches, show_branches
-from my_robot_basics.live.branches import branch_of
+from my_robot_basics.live import show_branches
+from my_robot_basics.live.pictures import branches
+from my_robot_basics.live.pictures.branches import branch_of
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,8 @@ import subprocess
 
 import pytest
 import rclpy
-from my_robot_basics.live import camera, run, send_pictures, stop, wait_until
+from my_robot_basics.live import run, send_pictures, stop, wait_until
+from my_robot_basics.live.pictures import camera
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import Image

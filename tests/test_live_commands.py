@@ -7,7 +7,7 @@ import sys
 import time
 
 import pytest
-from my_robot_basics.live import commands
+from my_robot_basics.live.packages import commands
 from my_robot_basics.ros2 import command_line
 from my_robot_basics.session.errors import NotRunnable
 
@@ -110,7 +110,8 @@ def test_a_subclass_of_str_is_not_run_as_a_command_line(notebook):
 def test_a_notebook_that_is_killed_leaves_no_node_behind():
     program = f'left = {START!r}\n' + (
         'import os, signal\n'
-        'from my_robot_basics.live import commands, run_commands\n'
+        'from my_robot_basics.live import run_commands\n'
+        'from my_robot_basics.live.packages import commands\n'
         "run_commands('left')\n"
         'print(commands._running[0].process.pid, flush=True)\n'
         'os.kill(os.getpid(), signal.SIGKILL)\n'

@@ -5,7 +5,7 @@ import time
 
 import psutil
 import pytest
-from my_robot_basics.live import course_nodes
+from my_robot_basics.live.nodes import course_nodes
 
 TIMEOUT_SEC = 60.0
 SLEEPS = 'import time; time.sleep(600)'

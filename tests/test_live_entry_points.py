@@ -3,8 +3,8 @@
 import ast
 
 import pytest
-from my_robot_basics.live.entry_points import NotAdded, add_entry_point
-from my_robot_basics.live.workspace import make_workspace
+from my_robot_basics.live.packages.entry_points import NotAdded, add_entry_point
+from my_robot_basics.live.packages.workspace import make_workspace
 
 LINE = 'greeter = my_robot_basics.greeter:main'
 

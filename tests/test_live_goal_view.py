@@ -10,7 +10,7 @@ from action_msgs.msg import GoalInfo, GoalStatus, GoalStatusArray
 from builtin_interfaces.msg import Time
 from my_robot_basics.drawing.goal import NOT_YET, NOW, REACHED
 from my_robot_basics.live import run, stop, wait_until
-from my_robot_basics.live.goal_view import GoalFollower, GoalView
+from my_robot_basics.live.pictures.goal_view import GoalFollower, GoalView
 from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID

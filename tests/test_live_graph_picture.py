@@ -7,8 +7,8 @@ from itertools import pairwise
 import pytest
 from matplotlib.image import imread
 from my_robot_basics.doctor.evidence import Endpoint
-from my_robot_basics.live import graph_picture
-from my_robot_basics.live.graph_picture import Box, arrows_of, describe, draw
+from my_robot_basics.live.pictures import graph_picture
+from my_robot_basics.live.pictures.graph_picture import Box, arrows_of, describe, draw
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from std_msgs.msg import String

@@ -127,7 +127,7 @@ node.destroy_node()
 rclpy.shutdown()
 """], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 other.stdout.readline()''')
-    lesson.run('from my_robot_basics.live.runner import _neighbours; _neighbours.start()')
+    lesson.run('from my_robot_basics.live.nodes.runner import _neighbours; _neighbours.start()')
     try:
         announced = "_neighbours._is_announced('/talker')"
         assert lesson.wait_for(lambda: lesson.value(announced) == 'True')

@@ -1,7 +1,7 @@
 """Log records among everything else that goes to stdout."""
 
 import pytest
-from my_robot_basics.live.log_lines import CONSOLE_FORMAT, LogRecord, Splitter
+from my_robot_basics.live.output.log_lines import CONSOLE_FORMAT, LogRecord, Splitter
 
 END = '\x1f'
 A = '[INFO] [1795273829.565929470] [a_node]: '

@@ -3,8 +3,8 @@
 import re
 
 import pytest
-from my_robot_basics.live import node_file
-from my_robot_basics.live.workspace import make_workspace
+from my_robot_basics.live.packages import node_file
+from my_robot_basics.live.packages.workspace import make_workspace
 
 NODE = 'print("mine")\n'
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from my_robot_basics.checks import CheckFailed
 from my_robot_basics.checks import package as package_of
-from my_robot_basics.live import executables, package_build, packages
+from my_robot_basics.live.packages import executables, package_build, packages
 from my_robot_basics.session.errors import NotRunnable
 from package_maker import PACKAGE, make_package
 
@@ -171,7 +171,7 @@ def main():
 def test_an_unclean_end_of_an_executable_is_reported(
     folder, capsys, monkeypatch, handler, words, check
 ):
-    monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.live.packages.processes.END_SEC', 1.0)
     monkeypatch.setattr('my_robot_basics.checks.packages.package_processes.END_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
     script.parent.mkdir(parents=True)
@@ -224,7 +224,7 @@ def test_a_node_that_outlives_its_executable_is_reported(folder, monkeypatch):
 
 @pytest.mark.starts
 def test_an_executable_that_leaves_its_process_group_is_ended(folder, monkeypatch):
-    monkeypatch.setattr('my_robot_basics.live.processes.END_SEC', 1.0)
+    monkeypatch.setattr('my_robot_basics.live.packages.processes.END_SEC', 1.0)
     script = folder / 'ros_ws/install/greeter/lib/greeter/greet'
     script.parent.mkdir(parents=True)
     leave = "import os, time\nos.setpgid(0, os.getpgid(os.getppid()))\nprint('up', flush=True)\n"

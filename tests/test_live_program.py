@@ -6,7 +6,7 @@ import sys
 
 import pytest
 from answered import read
-from my_robot_basics.live import program
+from my_robot_basics.live.packages import program
 from my_robot_basics.session.errors import COLUMNS
 
 CELL = """\

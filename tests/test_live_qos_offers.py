@@ -5,7 +5,9 @@ from itertools import product
 
 import matplotlib.image
 import pytest
-from my_robot_basics.live import notebook, qos_offers, show_offers
+from my_robot_basics.live import show_offers
+from my_robot_basics.live.output import notebook
+from my_robot_basics.live.pictures import qos_offers
 from rclpy.qos import (
     DurabilityPolicy,
     QoSCompatibility,

@@ -1,7 +1,8 @@
 """Pairs of QoS profiles are measured in a system of their own, and leave nothing behind."""
 
 import pytest
-from my_robot_basics.live import measure_pairs, qos_pairs, run, stop, wait_until
+from my_robot_basics.live import measure_pairs, run, stop, wait_until
+from my_robot_basics.live.pictures import qos_pairs
 from my_robot_basics.session.errors import WaitTimeout
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from my_robot_basics.live import notebook, qos_pictures, show_lost_messages, show_qos_matrix
+from my_robot_basics.live import show_lost_messages, show_qos_matrix
+from my_robot_basics.live.output import notebook
+from my_robot_basics.live.pictures import qos_pictures
 
 OUTCOMES = {
     ('RELIABLE VOLATILE', 'RELIABLE VOLATILE'): 'yes',

@@ -3,7 +3,9 @@
 from io import BytesIO
 
 import matplotlib.image
-from my_robot_basics.live import notebook, queue_picture, show_queues
+from my_robot_basics.live import show_queues
+from my_robot_basics.live.output import notebook
+from my_robot_basics.live.pictures import queue_picture
 
 
 def test_the_way_of_a_message_through_the_queues_is_described_in_order(monkeypatch):

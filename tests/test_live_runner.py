@@ -11,7 +11,7 @@ FORGET = """
 import weakref
 
 import rclpy
-from my_robot_basics.live import runner
+from my_robot_basics.live.nodes import runner
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerGuardCondition
 

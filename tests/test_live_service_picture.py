@@ -3,7 +3,9 @@
 from io import BytesIO
 
 import matplotlib.image
-from my_robot_basics.live import notebook, service_picture, show_service
+from my_robot_basics.live import show_service
+from my_robot_basics.live.output import notebook
+from my_robot_basics.live.pictures import service_picture
 
 
 def test_each_client_gets_its_own_response_after_its_request(monkeypatch):

@@ -7,7 +7,7 @@ import rclpy
 from geometry_msgs.msg import Point
 from jupyter_client.manager import start_new_kernel
 from my_robot_basics.live import drag_target, run, stop, wait_until
-from my_robot_basics.live.target import TargetView
+from my_robot_basics.live.pictures.target import TargetView
 from my_robot_basics.two_link_kinematics import forward_kinematics
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook

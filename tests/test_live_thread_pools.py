@@ -6,8 +6,8 @@ import time
 
 import pytest
 import rclpy
-from my_robot_basics.live import runner
-from my_robot_basics.live.thread_pools import THREADS, PromptPool
+from my_robot_basics.live.nodes import runner
+from my_robot_basics.live.patches.thread_pools import THREADS, PromptPool
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node

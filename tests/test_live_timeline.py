@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from my_robot_basics.live import show_arrivals, show_deliveries, timeline
-from my_robot_basics.live.timeline import LOST, delays_sec
+from my_robot_basics.live import show_arrivals, show_deliveries
+from my_robot_basics.live.pictures import timeline
+from my_robot_basics.live.pictures.timeline import LOST, delays_sec
 
 SENT = {number: 10.0 + 0.1 * number for number in range(5)}
 ARRIVED = {0: 10.01, 2: 10.3, 4: 10.9}

@@ -7,8 +7,9 @@ from types import SimpleNamespace
 import pytest
 from my_robot_basics.doctor import inside
 from my_robot_basics.doctor.callback import Callback
-from my_robot_basics.live import exercise, troubles
-from my_robot_basics.live.panel import Panel
+from my_robot_basics.live.nodes import exercise
+from my_robot_basics.live.output import troubles
+from my_robot_basics.live.output.panel import Panel
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 from rclpy.node import Node
 from sensor_msgs.msg import JointState

@@ -4,7 +4,8 @@ import threading
 
 import nbformat
 import pytest
-from my_robot_basics.live import wait_until, waiting
+from my_robot_basics.live import wait_until
+from my_robot_basics.live.output import waiting
 from my_robot_basics.session.errors import LiveError
 from nbclient import NotebookClient
 

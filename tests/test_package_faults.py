@@ -7,10 +7,10 @@ import types
 import pytest
 from my_robot_basics.checks.packages import package_words
 from my_robot_basics.exchange.endings import RACE, is_clean, why_crashed
-from my_robot_basics.live import executables
-from my_robot_basics.live.install_faults import fault_in_install
-from my_robot_basics.live.package_faults import fault_in_words
-from my_robot_basics.live.package_signals import handles_ctrl_c, waits_in_call
+from my_robot_basics.live.packages import executables
+from my_robot_basics.live.packages.install_faults import fault_in_install
+from my_robot_basics.live.packages.package_faults import fault_in_words
+from my_robot_basics.live.packages.package_signals import handles_ctrl_c, waits_in_call
 from my_robot_basics.session import package_files
 from package_maker import NODE, PACKAGE, make_package
 

@@ -43,7 +43,7 @@ def test_no_cell_of_the_student_is_run_to_define_a_missing_name(tmp_path):
     """The cell would forge the answer of the build, and binds the name that colcon misses."""
     forger = (
         'x = 1\n'
-        'from my_robot_basics.live import packages\n'
+        'from my_robot_basics.live.packages import packages\n'
         "told = {'found': True, 'status': 0, 'problem': '', 'executables': ['greet']}\n"
         'packages.answer_check = lambda *asked: told\n'
     )

@@ -14,7 +14,7 @@ from my_robot_basics.feedback import rclpy_names
 from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import stop_reasons
-from my_robot_basics.live.wrong_arguments import how_to_make
+from my_robot_basics.live.output.wrong_arguments import how_to_make
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 from my_robot_basics.validate.outputs import CellRun
 from my_robot_basics.validate.trouble import describe_cell_error

@@ -5,7 +5,7 @@ import re
 
 import nbformat
 import pytest
-from my_robot_basics.live.runner import stop
+from my_robot_basics.live.nodes.runner import stop
 from my_robot_basics.quiz import ask
 from my_robot_basics.quiz.asking import is_same
 from my_robot_basics.quiz.explanations import SERVICES, TOPICS

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from my_robot_basics.live.workspace import BUILD
+from my_robot_basics.live.packages.workspace import BUILD
 from nbclient import NotebookClient
 from nbformat.v4 import new_code_cell, new_notebook
 

@@ -95,7 +95,7 @@ def test_timeouts_of_cells_and_questions_use_the_cpu_time_of_the_student_room(mo
 
 
 def test_a_cell_that_imports_live_finds_the_kernel_set_up(rooms, student):
-    code = 'from my_robot_basics.live import runner; print(runner._is_set_up)'
+    code = 'from my_robot_basics.live.nodes import runner; print(runner._is_set_up)'
     assert said(student(rooms, code)) == 'True\n'
 
 

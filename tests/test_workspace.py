@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from jupyter_client.manager import start_new_kernel
 from my_robot_basics.language.speaking import OF_TERMINALS
-from my_robot_basics.live import workspace
-from my_robot_basics.live.workspace import make_workspace
+from my_robot_basics.live.packages import workspace
+from my_robot_basics.live.packages.workspace import make_workspace
 from my_robot_basics.session import classroom
 from ros2_command import own_domain
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from my_robot_basics.live.workspace import BUILD, make_workspace
+from my_robot_basics.live.packages.workspace import BUILD, make_workspace
 from ros2_command import TIMEOUT_SEC
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import websocket_connect

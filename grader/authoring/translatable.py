@@ -24,7 +24,7 @@ ONLY_DRAWN = {
     *('arm', 'branches', 'follow', 'goal_view', 'graph_picture', 'qos_offers', 'qos_pictures'),
     *('queue_picture', 'service_picture', 'stdout_tap', 'target', 'timeline'),
 }
-"""The modules of `live` whose texts are parts of pictures, and no sentences."""
+"""The modules of `live` whose texts are parts of pictures or a thread's name, no sentences."""
 MODULES = {
     'checks': [
         f'my_robot_basics/my_robot_basics/{package}/*.py'
@@ -37,7 +37,7 @@ MODULES = {
     'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
     'live': [
         f'my_robot_basics/my_robot_basics/{modules}.py'
-        for modules in ('session/*', 'ros2/environment', 'ros2/shell', 'live/*')
+        for modules in ('session/*', 'ros2/environment', 'ros2/shell', 'live/*', 'live/*/*')
     ],
     'doctor': [
         f'my_robot_basics/my_robot_basics/doctor/{modules}.py'
@@ -57,7 +57,7 @@ MODULES = {
     ],
 }
 """The modules with texts for students, by catalogue."""
-DRAWN = ('live', 'drawing', 'doctor')
+DRAWN = ('live/pictures', 'drawing', 'doctor')
 """The packages whose pictures have an alternative text."""
 CHARTS = 'grader/report/charts.py'
 PAGES = {'feedback': 'grader/report/page.html.j2', 'report': 'grader/report/report.html.j2'}
@@ -112,7 +112,7 @@ def _add(texts: Texts, found: Iterable[str], place: str) -> None:
 def _modules(root: Path, patterns: Sequence[str]) -> Texts:
     texts: Texts = {}
     for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
-        if path.parent.name == 'live' and path.stem in ONLY_DRAWN:
+        if 'live' in path.parts and path.stem in ONLY_DRAWN:
             continue
         _add(texts, messages_in(path.read_text(encoding='utf-8')), str(path.relative_to(root)))
     return texts

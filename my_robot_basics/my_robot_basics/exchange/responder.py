@@ -64,43 +64,43 @@ def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
 
 def _last_raised(node_name: str) -> str:
     """Return the last exception in a callback of a node that `live` spins, or ''."""
-    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
     return troubles.last_raised(node_name) if troubles else ''
 
 
 def _last_raised_ns(node_name: str) -> int:
     """Return when a callback of a node that `live` spins has raised last (monotonic); or 0."""
-    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
     return troubles.last_raised_ns(node_name) if troubles else 0
 
 
 def _unpublished_field(node_name: str) -> tuple[str, str]:
     """Return the field that kept a node from publishing, and its type."""
-    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
     return troubles.unpublished_field(node_name) if troubles else ('', '')
 
 
 def _how_answer_ended(_: str) -> tuple[str, str, str]:
     """Return the class of the answer if its node was ended, what took its place, and its name."""
-    answer_end = sys.modules.get('my_robot_basics.live.answer_end')
+    answer_end = sys.modules.get('my_robot_basics.live.nodes.answer_end')
     return answer_end.how_answer_ended() if answer_end else ('', '', '')
 
 
 def _not_awaited(_: str) -> tuple[str, int, str]:
     """Return the coroutine that the answer has called without `await`, and the line of it."""
-    unawaited = sys.modules.get('my_robot_basics.live.unawaited')
+    unawaited = sys.modules.get('my_robot_basics.live.nodes.unawaited')
     return unawaited.first() if unawaited else ('', 0, '')
 
 
 def _blocking_line(node_name: str) -> str:
     """Return the line at which a callback blocks a node that `live` spins, or ''."""
-    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
     return troubles.blocking_line(node_name) if troubles else ''
 
 
 def _sleeping_line(_: str) -> tuple[int, str]:
     """Return the line at which a callback sleeps most of the time; this takes half a second."""
-    troubles = sys.modules.get('my_robot_basics.live.troubles')
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
     return troubles.sleeping_line() if troubles else (0, '')
 
 
@@ -126,7 +126,7 @@ def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
 
 def _ask_package(package: str, verb: str, *args: Any) -> dict[str, Any] | None:
     """Ask `live` about a package that it has built, or to act on it; None without `live`."""
-    packages = sys.modules.get('my_robot_basics.live.packages')
+    packages = sys.modules.get('my_robot_basics.live.packages.packages')
     return packages.answer_check(package, verb, *args) if packages else None
 
 

@@ -28,7 +28,7 @@ def load_ipython_extension(shell: Any) -> None:
 
 
 def _set_up() -> None:
-    from my_robot_basics.live import runner  # slow, because it imports rclpy
+    from my_robot_basics.live.nodes import runner  # slow, because it imports rclpy
 
     try:
         runner.set_up()

@@ -7,7 +7,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState, Temperature
 
-from my_robot_basics.live import runner
+from my_robot_basics.live.nodes import runner
 from my_robot_basics.session.errors import tell
 
 TOPIC = '/kinematics/joint_states'

@@ -9,7 +9,7 @@ from typing import Any
 from rclpy.node import Node
 
 from my_robot_basics.language.speaking import language_here, put
-from my_robot_basics.live.runner import ensure_rclpy, launch, stop
+from my_robot_basics.live.nodes.runner import ensure_rclpy, launch, stop
 from my_robot_basics.quiz.explanations import EXPLANATIONS
 
 Program = Callable[[Callable[..., Any]], Any]

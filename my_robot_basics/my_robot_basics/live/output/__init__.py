@@ -1,0 +1,1 @@
+"""What a cell shows: its panel, the ROS logger's lines, exceptions of callbacks."""

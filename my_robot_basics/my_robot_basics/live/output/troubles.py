@@ -1,0 +1,170 @@
+"""Record exceptions of a node's callbacks, and find callbacks that do not return."""
+
+import sysconfig
+import time
+import traceback
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.client import Client
+from rclpy.publisher import Publisher
+from rclpy.service import Service
+
+from my_robot_basics.exchange.wire import THREADS
+from my_robot_basics.exchange.wrong_fields import wrong_field
+from my_robot_basics.live.output.wrong_arguments import how_to_make
+from my_robot_basics.session.errors import without_signatures
+
+UNFINISHED_SEC = 0.5
+_last: dict[str, str] = {}
+"""The last exception of a node's callbacks, by the node's full name."""
+_raised_ns: dict[str, int] = {}
+"""When a node's callbacks have raised last, as `time.monotonic_ns()`."""
+_fields: dict[str, tuple[str, str]] = {}
+"""What `unpublished_field` returns, by the node's full name."""
+_of_services: dict[tuple[str, str], str] = {}
+"""The last exception of a service's callback, by the node's and the service's full names."""
+_NOT_THEIRS = (str(Path(rclpy.__file__).parent), str(Path(__file__).parents[1]))
+_OF_A_LIBRARY = (
+    *(sysconfig.get_path(kind) for kind in ('stdlib', 'purelib', 'platlib')),
+    f'{Path(__file__).parents[2]}/',
+)
+"""Folders of code that a student calls, the course's own too: the line of the call says more."""
+
+
+def where_and_what(error: BaseException) -> tuple[str, str]:
+    """Return where the error happened, outermost call first, and its text."""
+    where = '\n'.join(f'  {_line(frame)}' for frame in _frames(error))
+    return where, ''.join(traceback.format_exception_only(error)).strip()
+
+
+def remember(node_name: str, error: BaseException) -> None:
+    """Record an exception of the node's callback, or of a thread of the notebook, and its line."""
+    _, what = where_and_what(error)
+    frames = _frames(error)
+    own = [frame for frame in frames if not frame.filename.startswith(_OF_A_LIBRARY)]
+    place = _line((own or frames)[-1]) if frames else ''
+    what = without_signatures(what)
+    told = f'{what} ({place})' if place else what
+    _fields[node_name] = _unpublished(error) or ('', how_to_make(error))
+    if node_name != THREADS and (service_name := _service(error)):
+        _of_services[node_name, service_name] = told
+    # these two last: a check in another thread that sees them asks for the others at once
+    _last[node_name] = told
+    _raised_ns[node_name] = time.monotonic_ns()
+
+
+def forget(node_name: str) -> None:
+    """Drop a node's records, and those of threads: a new node of that name is starting."""
+    for of_nodes in (_last, _raised_ns, _fields):
+        of_nodes.pop(node_name, None)
+        of_nodes.pop(THREADS, None)
+    for key in [key for key in _of_services if key[0] == node_name]:
+        del _of_services[key]
+
+
+def forget_all() -> None:
+    """Drop all records, at the beginning of an exercise."""
+    _last.clear()
+    _raised_ns.clear()
+    _fields.clear()
+    _of_services.clear()
+
+
+def last_raised(node_name: str) -> str:
+    """Return the last exception of the node's callbacks, or ''."""
+    return _last.get(node_name, '')
+
+
+def unpublished_field(node_name: str) -> tuple[str, str]:
+    """Return the field that kept the node from sending, and its type, for its last exception.
+
+    If it gave rclpy a wrong object instead of a request or goal: '', and how to make one.
+    """
+    return _fields.get(node_name, ('', ''))
+
+
+def last_raised_ns(node_name: str) -> int:
+    """Return when a callback of the node has raised last, as `time.monotonic_ns()`; 0 if none."""
+    return _raised_ns.get(node_name, 0)
+
+
+def last_raised_in_service(service_name: str) -> dict[str, str]:
+    """Return the last exception of a service's callback, by the nodes' full names."""
+    return {node: what for (node, name), what in _of_services.items() if name == service_name}
+
+
+def blocking_line(node_name: str) -> str:
+    """Return the line at which a callback blocks all others of the node, or ''.
+
+    It is a callback that is in progress for UNFINISHED_SEC, for which this function waits.
+    """
+    from my_robot_basics.doctor import inside  # few answers need it
+
+    seen = inside.Inside()
+    seen.look()
+    time.sleep(UNFINISHED_SEC)
+    seen.look()
+    lasting = seen.callbacks(at_least_sec=UNFINISHED_SEC)
+    return next((each.line for each in lasting if node_name in each.holds and each.line), '')
+
+
+def sleeping_line() -> tuple[int, str]:
+    """Return the line at which callbacks sleep most of the time: its number and text; or 0, ''."""
+    from my_robot_basics.live.output import sleeping  # few answers need it
+
+    return sleeping.sleeping_line()
+
+
+def _frames(error: BaseException) -> list[traceback.FrameSummary]:
+    return [
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if not frame.filename.startswith(_NOT_THEIRS)
+    ]
+
+
+def _line(frame: traceback.FrameSummary) -> str:
+    line_number, function_name, code = frame.lineno, frame.name, frame.line
+    where = f'line {line_number}, in {function_name}: {code}'
+    return ', '.join(filter(None, (_file_name(frame.filename), where)))
+
+
+def _unpublished(error: BaseException) -> tuple[str, str] | None:
+    """Return the field that could not be serialized, and its type; None for other errors."""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        message, type_ = _sent(frame.f_locals)
+        if type_ is not None and isinstance(message, type_):
+            path, _, type_name = wrong_field(message, type_)
+            return (path, type_name) if path else None
+    return None
+
+
+def _sent(names: dict[str, Any]) -> tuple[Any, Any]:
+    """Return what one of rclpy's functions with these local variables sends, and its type."""
+    match names.get('self'):
+        case Publisher():
+            return names.get('msg'), names['self'].msg_type
+        case Service():
+            return names.get('response'), names['self'].srv_type.Response
+        case Client():
+            return names.get('request'), names['self'].srv_type.Request
+    return None, None
+
+
+def _service(error: BaseException) -> str:
+    """Return the service whose callback raised, from the frame of rclpy that called it; or ''."""
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        service = frame.f_locals.get('srv')
+        if frame.f_code.co_name == '_execute' and isinstance(service, Service):
+            return service.service_name
+    return ''
+
+
+def _file_name(filename: str) -> str:
+    """Return a file's name for a message; '' for a cell, whose file name is meaningless."""
+    path = Path(filename)
+    if path.parent.name.startswith('ipykernel_') or filename.startswith('<'):
+        return ''
+    return path.name

@@ -1,0 +1,1 @@
+"""A ROS package of the student's: its workspace, its build, its processes."""

@@ -1,0 +1,1 @@
+"""What this process changes about rclpy of Jazzy, and about its waits."""
