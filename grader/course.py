@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from my_robot_basics.validate.packages import BUILD, packages_of
+from my_robot_basics.validate.lessons.packages import BUILD, packages_of
 from nbformat import NotebookNode
 
 from grader.common.checkout import ROOT as ROOT  # other modules import it from here

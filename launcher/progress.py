@@ -15,7 +15,7 @@ def run(environment: Environment, variables: dict[str, str], arguments: list[str
         raise LauncherError('there is no folder notebooks/: make it with ./course release.')
     language, arguments = choose_language(lessons, variables, arguments)
     page = lessons / ('' if language == ENGLISH else language) / INDEX
-    command = [str(environment.python), '-P', '-m', 'my_robot_basics.validate.progress']
+    command = [str(environment.python), '-P', '-m', 'my_robot_basics.validate.progress.progress']
     command += [str(page), *arguments]
     sys.stdout.flush()
     os.execve(command[0], command, variables)

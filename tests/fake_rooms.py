@@ -4,8 +4,8 @@ import asyncio
 import time
 
 from doubling_lesson import CANARY
-from my_robot_basics.validate import second_look
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.verdicts import second_look
 
 
 class FakeRooms:

@@ -37,7 +37,7 @@ from attacks.corpus import (
     source_of,
 )
 from course_maker import TOY, released_course
-from my_robot_basics.validate.names import names_of
+from my_robot_basics.validate.lessons.names import names_of
 
 from grader.course import Course
 from grader.export.scores import write_scores

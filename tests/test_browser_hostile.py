@@ -13,7 +13,7 @@ from urllib.parse import quote
 import pytest
 from chromium import drives_chromium, launched
 from course_maker import TOY, answered, executed, make_course, submit, toy_lesson, write_source
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.kernels.outputs import CellRun
 from nbformat.v4 import new_output
 from nbgrader.api import Gradebook
 

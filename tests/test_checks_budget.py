@@ -3,10 +3,10 @@
 import asyncio
 
 import pytest
-from my_robot_basics.validate import checks_budget
-from my_robot_basics.validate.checks_budget import TOO_BUSY, TOO_SLOW, ChecksBudget
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.overdue import judge_overdue
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.running import checks_budget
+from my_robot_basics.validate.running.checks_budget import TOO_BUSY, TOO_SLOW, ChecksBudget
+from my_robot_basics.validate.verdicts.overdue import judge_overdue
 from nbformat.v4 import new_code_cell
 
 

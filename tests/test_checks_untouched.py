@@ -9,9 +9,9 @@ import nbformat
 import pytest
 from answered import ROOT, read, students_environment
 from jupyter_client.manager import start_new_kernel
-from my_robot_basics.validate.lesson import read_lesson
-from my_robot_basics.validate.unanswered import explain_unanswered, is_unanswered
-from my_robot_basics.validate.verdict import Verdict
+from my_robot_basics.validate.lessons.lesson import read_lesson
+from my_robot_basics.validate.verdicts.unanswered import explain_unanswered, is_unanswered
+from my_robot_basics.validate.verdicts.verdict import Verdict
 
 from grader.notebook.restore import make_template, restore
 

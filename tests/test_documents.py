@@ -9,10 +9,10 @@ from xml.etree import ElementTree
 
 import pytest
 from my_robot_basics.session import package_files
-from my_robot_basics.validate import limits as cell_limits
-from my_robot_basics.validate import timeouts
-from my_robot_basics.validate.names import MAX_SOURCE_CHARACTERS
-from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS
+from my_robot_basics.validate.kernels import limits as cell_limits
+from my_robot_basics.validate.kernels import timeouts
+from my_robot_basics.validate.kernels.outputs import MAX_OUTPUT_CHARACTERS
+from my_robot_basics.validate.lessons.names import MAX_SOURCE_CHARACTERS
 
 from grader.collect import uploads
 from grader.common import dates

@@ -7,7 +7,7 @@ import pytest
 from course_maker import TOY, make_course
 from my_robot_basics.language.catalogues import catalogue_path
 from my_robot_basics.language.speaking import LANGUAGE
-from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.lessons.cells import KEY
 
 from grader.authoring.edition_outputs import OutputWords
 from grader.authoring.editions import editions, is_translated

@@ -10,7 +10,7 @@ import nbformat
 import pytest
 from doubling_lesson import CANARY, GOOD, cells_of, handed_in, lesson, marked, outcomes
 from fake_rooms import FakeRooms, ended
-from my_robot_basics.validate import budget
+from my_robot_basics.validate.verdicts import budget
 from nbformat.v4 import new_code_cell
 from nbgrader.utils import determine_grade
 

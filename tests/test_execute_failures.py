@@ -8,7 +8,7 @@ import pytest
 from doubling_lesson import CANARY, GOOD, cells_of, handed_in, lesson, outcomes
 from fake_rooms import DEAD, LATE, FakeRooms, ended
 from my_robot_basics.session import pressure
-from my_robot_basics.validate import second_look
+from my_robot_basics.validate.verdicts import second_look
 
 from grader.common.errors import RoomFailure
 from grader.judging import execute as module

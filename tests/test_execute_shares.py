@@ -5,8 +5,8 @@ import asyncio
 import pytest
 from doubling_lesson import GOOD, handed_in, lesson
 from fake_rooms import FakeRooms, ended
-from my_robot_basics.validate import budget
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.verdicts import budget
 from nbformat.v4 import new_output
 
 from grader.judging import execute as module

@@ -1,6 +1,6 @@
 """Finding exercises in a lesson."""
 
-from my_robot_basics.validate.exercises import find_exercises
+from my_robot_basics.validate.lessons.exercises import find_exercises
 from nbformat.v4 import new_code_cell, new_notebook
 from small_lesson import lesson
 

@@ -11,7 +11,7 @@ from my_robot_basics.checks import CheckFailed, expect, fail, student
 from my_robot_basics.exchange import responder
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.hidden_source import mark_hidden_part, without_hidden_part
-from my_robot_basics.validate.cells import role
+from my_robot_basics.validate.lessons.cells import role
 
 from grader.__main__ import main
 from grader.course import Course

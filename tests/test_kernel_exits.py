@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 from doubling_lesson import GOOD, handed_in, lesson
-from my_robot_basics.validate import budget
+from my_robot_basics.validate.verdicts import budget
 
 from grader.judging import execute as module
 from grader.judging.execute import execute

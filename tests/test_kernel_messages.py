@@ -8,15 +8,15 @@ import psutil
 import pytest
 import zmq
 from grading_kernels import text_of
-from my_robot_basics.validate.limits import (
+from my_robot_basics.validate.kernels.limits import (
     FLOOD_CHARACTERS,
     MAX_MESSAGE_BYTES,
     MAX_MESSAGES_WAITING,
 )
-from my_robot_basics.validate.messages import next_message, parse_message_part
-from my_robot_basics.validate.outputs import CUT_OFF, MAX_OUTPUT_CHARACTERS
-from my_robot_basics.validate.questions import reply_of
-from my_robot_basics.validate.verdict import judge
+from my_robot_basics.validate.kernels.messages import next_message, parse_message_part
+from my_robot_basics.validate.kernels.outputs import CUT_OFF, MAX_OUTPUT_CHARACTERS
+from my_robot_basics.validate.kernels.questions import reply_of
+from my_robot_basics.validate.verdicts.verdict import judge
 from nbformat.v4 import new_code_cell
 
 

@@ -5,7 +5,7 @@ import time
 
 import pytest
 from grading_kernels import IGNORES, opened_kernel, processes_of, text_of
-from my_robot_basics.validate import timeouts
+from my_robot_basics.validate.kernels import timeouts
 
 
 @pytest.fixture(scope='module')

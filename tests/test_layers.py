@@ -11,7 +11,7 @@ import pytest
 
 import grader
 import my_robot_basics
-from my_robot_basics import checks, live
+from my_robot_basics import checks, live, validate
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = {
@@ -77,7 +77,7 @@ def test_private_names_of_a_module_are_imported_nowhere():
 
 
 LAYERED = pytest.mark.parametrize(
-    'package', [grader, my_robot_basics, checks, live], ids=lambda p: p.__name__
+    'package', [grader, my_robot_basics, checks, live, validate], ids=lambda p: p.__name__
 )
 
 

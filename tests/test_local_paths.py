@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 from course_maker import answered, released_course
-from my_robot_basics.validate.cells import KEY, grade_id
+from my_robot_basics.validate.lessons.cells import KEY, grade_id
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from grader.course import ROOT

@@ -5,7 +5,7 @@ import time
 import pytest
 from IPython.core import inputtransformer2
 from IPython.core.inputtransformer2 import make_tokens_by_line
-from my_robot_basics.validate.names import (
+from my_robot_basics.validate.lessons.names import (
     MAX_IPYTHON,
     MAX_SOURCE_CHARACTERS,
     Names,

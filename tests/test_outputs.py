@@ -4,8 +4,8 @@ import time
 
 import nbformat
 import pytest
-from my_robot_basics.validate.outputs import MAX_OUTPUT_CHARACTERS, CellRun, Displays
-from my_robot_basics.validate.safe_outputs import MAX_ERROR_CHARACTERS
+from my_robot_basics.validate.kernels.outputs import MAX_OUTPUT_CHARACTERS, CellRun, Displays
+from my_robot_basics.validate.kernels.safe_outputs import MAX_ERROR_CHARACTERS
 
 
 def stream(text, name='stdout'):

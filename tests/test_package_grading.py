@@ -1,8 +1,8 @@
 """A package that was handed in is built and run in a sandbox, and judged by what it does."""
 
 import pytest
-from my_robot_basics.validate import budget
-from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.lessons.cells import KEY
+from my_robot_basics.validate.verdicts import budget
 from package_maker import PACKAGE, make_package, package_lesson
 
 from grader.judging.execute import execute

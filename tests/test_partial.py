@@ -5,8 +5,8 @@ import json
 
 import pytest
 from course_maker import answered, executed, released_course, submit
-from my_robot_basics.validate.cells import KEY, grade_id
-from my_robot_basics.validate.verdict import Verdict, write_verdict
+from my_robot_basics.validate.lessons.cells import KEY, grade_id
+from my_robot_basics.validate.verdicts.verdict import Verdict, write_verdict
 from stand_in import stand_in
 
 from grader.__main__ import main

@@ -4,9 +4,9 @@ import time
 
 import nbformat
 import pytest
-from my_robot_basics.validate.exercises import find_exercises
-from my_robot_basics.validate.misspelled import are_misspelled
-from my_robot_basics.validate.plans import plan_for_names, plans
+from my_robot_basics.validate.lessons.exercises import find_exercises
+from my_robot_basics.validate.lessons.misspelled import are_misspelled
+from my_robot_basics.validate.lessons.plans import plan_for_names, plans
 from nbformat.v4 import new_code_cell, new_notebook
 from small_lesson import answer, grade, lesson, marked
 

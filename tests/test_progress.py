@@ -8,9 +8,9 @@ import nbformat
 import pytest
 from answered import ROOT, answered
 from my_robot_basics.validate.errors import CourseError
-from my_robot_basics.validate.exercises import find_exercises
-from my_robot_basics.validate.lesson import read_lesson
-from my_robot_basics.validate.passed_answers import (
+from my_robot_basics.validate.lessons.exercises import find_exercises
+from my_robot_basics.validate.lessons.lesson import read_lesson
+from my_robot_basics.validate.progress.passed_answers import (
     MOST_OF_ONE,
     NewerFile,
     answer_of,
@@ -18,9 +18,9 @@ from my_robot_basics.validate.passed_answers import (
     read_passes,
     record,
 )
-from my_robot_basics.validate.progress import main, read_progress
-from my_robot_basics.validate.remembering import has_passed, remember
-from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
+from my_robot_basics.validate.progress.progress import main, read_progress
+from my_robot_basics.validate.progress.remembering import has_passed, remember
+from my_robot_basics.validate.reports.report import CheckFeedback, ExerciseFeedback, Report
 
 LESSON = '02_joint_state'
 NAME = 'to_joint_state'

@@ -16,8 +16,8 @@ from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import stop_reasons
 from my_robot_basics.live.output.wrong_arguments import how_to_make
 from my_robot_basics.two_link_kinematics import inverse_kinematics
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.trouble import describe_cell_error
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.verdicts.trouble import describe_cell_error
 from nbformat.v4 import new_output
 from rcl_interfaces.msg import FloatingPointRange
 from rclpy.action import ActionClient, ActionServer

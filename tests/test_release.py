@@ -5,8 +5,8 @@ from pathlib import Path
 import nbformat
 import pytest
 from course_maker import PIXEL, TOY, make_course, toy_lesson, write_source
-from my_robot_basics.validate.cells import KEY, fingerprint
-from my_robot_basics.validate.lesson import read_lesson
+from my_robot_basics.validate.lessons.cells import KEY, fingerprint
+from my_robot_basics.validate.lessons.lesson import read_lesson
 from nbgrader.utils import compute_checksum
 
 from grader.authoring.exercise_cells import outside_of_exercises

@@ -4,7 +4,7 @@ import asyncio
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.kernels.outputs import CellRun
 from two_rooms import PUBLISH, check_in, opened_rooms, said, student_in, text_of
 
 from grader.kernels.rooms import GradingRooms

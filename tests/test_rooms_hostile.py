@@ -4,7 +4,7 @@ import asyncio
 import json
 
 import pytest
-from my_robot_basics.validate.outputs import CellRun
+from my_robot_basics.validate.kernels.outputs import CellRun
 from two_rooms import check_in, opened_rooms, said, student_in, text_of
 
 from grader.kernels import rooms as module

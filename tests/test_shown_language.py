@@ -14,9 +14,9 @@ from my_robot_basics.language.speaking import language_of
 from my_robot_basics.ros2 import environment
 from my_robot_basics.session import overlays
 from my_robot_basics.session.lessons import RunningLesson
-from my_robot_basics.validate.as_text import as_text
-from my_robot_basics.validate.cell_names import replace_cell_ids
-from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
+from my_robot_basics.validate.lessons.cell_names import replace_cell_ids
+from my_robot_basics.validate.reports.as_text import as_text
+from my_robot_basics.validate.reports.report import CheckFeedback, ExerciseFeedback, Report
 from my_robot_basics.validate.text import columns
 
 from grader.course import Course

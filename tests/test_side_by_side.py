@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 from answered import answered, read
 from fake_rooms import FakeRooms, ended
-from my_robot_basics.validate import run
-from my_robot_basics.validate.cells import grade_id
-from my_robot_basics.validate.exercises import find_exercises
-from my_robot_basics.validate.judging import JudgedExercise
-from my_robot_basics.validate.side_by_side import join_judged, split_exercise
+from my_robot_basics.validate.lessons.cells import grade_id
+from my_robot_basics.validate.lessons.exercises import find_exercises
+from my_robot_basics.validate.running import run
+from my_robot_basics.validate.verdicts.judging import JudgedExercise
+from my_robot_basics.validate.verdicts.side_by_side import join_judged, split_exercise
 from package_changes import FULL, LESSON, ours, write
 from package_maker import package_lesson
 

@@ -4,8 +4,8 @@ import re
 
 import pytest
 from jupyter_client.manager import start_new_kernel
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.trouble import MOST_OF_A_LINE, describe_cell_error
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.verdicts.trouble import MOST_OF_A_LINE, describe_cell_error
 from nbformat.v4 import new_output
 
 EQUALS = ', so write <= or >=, with the equals sign last'

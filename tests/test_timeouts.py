@@ -4,8 +4,12 @@ import asyncio
 from types import SimpleNamespace
 
 import pytest
-from my_robot_basics.validate import timeouts
-from my_robot_basics.validate.timeouts import LOOK_EVERY_SEC, MOST_TIMES, wait_for_end_by_cpu_time
+from my_robot_basics.validate.kernels import timeouts
+from my_robot_basics.validate.kernels.timeouts import (
+    LOOK_EVERY_SEC,
+    MOST_TIMES,
+    wait_for_end_by_cpu_time,
+)
 
 LIMIT_SEC = 10.0
 

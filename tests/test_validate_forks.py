@@ -7,15 +7,15 @@ import sys
 import pytest
 from answered import answered
 from my_robot_basics.session.pressure import Stopwatch
-from my_robot_basics.validate import run
 from my_robot_basics.validate.errors import RoomFailure
-from my_robot_basics.validate.forks import ForkServer
-from my_robot_basics.validate.judging import JudgedExercise
-from my_robot_basics.validate.kernel import LocalKernel
+from my_robot_basics.validate.kernels.forks import ForkServer
+from my_robot_basics.validate.kernels.kernel import LocalKernel
+from my_robot_basics.validate.running import run
+from my_robot_basics.validate.verdicts.judging import JudgedExercise
 
 NOTHING_SHARED = """
 import importlib, threading
-from my_robot_basics.validate import forkserver
+from my_robot_basics.validate.kernels import forkserver
 for name in forkserver._IMPORTS:
     importlib.import_module(name)
 from my_robot_basics.session import classroom

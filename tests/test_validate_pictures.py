@@ -4,8 +4,8 @@ import zlib
 
 import pytest
 from course_maker import PIXEL
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.pictures import MAX_PIXELS, why_not_shown
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.kernels.pictures import MAX_PIXELS, why_not_shown
 
 from grader.notebook.raw_notebook import _pictures
 from grader.report.page_parts import show_data

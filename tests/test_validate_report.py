@@ -6,14 +6,14 @@ from types import SimpleNamespace
 
 import pytest
 from answered import answered
-from my_robot_basics.validate import run
-from my_robot_basics.validate.as_text import as_text
-from my_robot_basics.validate.cells import KEY
-from my_robot_basics.validate.check_feedback import make_check
 from my_robot_basics.validate.errors import RoomFailure
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.report import CheckFeedback, ExerciseFeedback, Report
-from my_robot_basics.validate.verdict import Verdict
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.lessons.cells import KEY
+from my_robot_basics.validate.reports.as_text import as_text
+from my_robot_basics.validate.reports.check_feedback import make_check
+from my_robot_basics.validate.reports.report import CheckFeedback, ExerciseFeedback, Report
+from my_robot_basics.validate.running import run
+from my_robot_basics.validate.verdicts.verdict import Verdict
 from nbformat.v4 import new_code_cell
 
 

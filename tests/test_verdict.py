@@ -2,8 +2,8 @@
 
 import nbformat
 import pytest
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.verdict import Verdict, judge, leave_ungraded, write_verdict
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.verdicts.verdict import Verdict, judge, leave_ungraded, write_verdict
 from nbformat.v4 import new_code_cell, new_output
 from nbgrader.utils import determine_grade
 

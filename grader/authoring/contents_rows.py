@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable
 from functools import reduce
 
 from my_robot_basics.feedback.hidden_source import without_hidden_part
-from my_robot_basics.validate.cells import graded_id, role, title_of
-from my_robot_basics.validate.exercises import find_exercises
-from my_robot_basics.validate.titles import checks_something
+from my_robot_basics.validate.lessons.cells import graded_id, role, title_of
+from my_robot_basics.validate.lessons.exercises import find_exercises
+from my_robot_basics.validate.lessons.titles import checks_something
 from nbformat import NotebookNode
 
 JOINED = '{abilities}; {ability}'

@@ -18,7 +18,7 @@ from my_robot_basics.language.catalogues import (
     read_translations,
 )
 from my_robot_basics.language.speaking import LANGUAGE
-from my_robot_basics.validate.cells import KEY, role
+from my_robot_basics.validate.lessons.cells import KEY, role
 from nbformat import NotebookNode
 
 from grader.authoring.blocks import translate_blocks

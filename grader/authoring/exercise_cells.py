@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from my_robot_basics.validate.cells import grade_id, is_reset, role
-from my_robot_basics.validate.exercises import find_exercises
+from my_robot_basics.validate.lessons.cells import grade_id, is_reset, role
+from my_robot_basics.validate.lessons.exercises import find_exercises
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 

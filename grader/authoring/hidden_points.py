@@ -1,8 +1,8 @@
 """Record in a released notebook what *Validate* needs and its cells no longer show."""
 
 from my_robot_basics.feedback.hidden_source import without_hidden_part
-from my_robot_basics.validate.cells import KEY, RECORD, fingerprint, grade_id, roles
-from my_robot_basics.validate.titles import checks_something
+from my_robot_basics.validate.lessons.cells import KEY, RECORD, fingerprint, grade_id, roles
+from my_robot_basics.validate.lessons.titles import checks_something
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from babel import Locale
 from my_robot_basics.language.speaking import LANGUAGE
-from my_robot_basics.validate.cells import KEY
-from my_robot_basics.validate.progress import CONTENTS
+from my_robot_basics.validate.lessons.cells import KEY
+from my_robot_basics.validate.progress.progress import CONTENTS
 from nbformat import NotebookNode, from_dict, v4, write
 
 from grader.authoring.contents_rows import (

@@ -7,7 +7,7 @@ its BEGIN.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from my_robot_basics.validate.cells import grade_id
+from my_robot_basics.validate.lessons.cells import grade_id
 from nbformat import NotebookNode
 
 

@@ -7,7 +7,7 @@ import ast
 import re
 from collections.abc import Iterator
 
-from my_robot_basics.validate.cells import role
+from my_robot_basics.validate.lessons.cells import role
 from nbformat import NotebookNode
 
 SCHEMA = 3

@@ -12,7 +12,7 @@ comments right after the answer, and replace the stub:
 import re
 
 import nbformat
-from my_robot_basics.validate.safe_outputs import WIDGET_VIEW
+from my_robot_basics.validate.kernels.safe_outputs import WIDGET_VIEW
 from nbconvert.preprocessors import Preprocessor
 from nbformat import NotebookNode
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from my_robot_basics.feedback.hidden_source import without_hidden_part
 from my_robot_basics.language.picture_words import PICTURES
 from my_robot_basics.language.sentences import JOINED
-from my_robot_basics.validate.cells import role
+from my_robot_basics.validate.lessons.cells import role
 from nbformat import NotebookNode
 
 from grader.authoring import index
@@ -34,7 +34,10 @@ MODULES = {
         f'my_robot_basics/my_robot_basics/ros2/{each}.py'
         for each in ('definition*', 'command_line')
     ],
-    'validate': ['my_robot_basics/my_robot_basics/validate/*.py'],
+    'validate': [
+        f'my_robot_basics/my_robot_basics/{modules}.py'
+        for modules in ('validate/*', 'validate/*/*')
+    ],
     'live': [
         f'my_robot_basics/my_robot_basics/{modules}.py'
         for modules in ('session/*', 'ros2/environment', 'ros2/shell', 'live/*', 'live/*/*')

@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 import nbformat
-from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.lessons.cells import KEY
 from nbformat import NotebookNode
 from nbgrader.utils import compute_checksum
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.lessons.cells import KEY
 
 from grader.common.files import write_whole
 from grader.common.text import spreadsheet_table

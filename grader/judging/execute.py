@@ -8,14 +8,14 @@ from functools import partial
 from pathlib import Path
 
 import nbformat
-from my_robot_basics.validate.budget import Budget
-from my_robot_basics.validate.cells import KEY, grade_id, role
-from my_robot_basics.validate.exercises import Exercise, find_exercises
-from my_robot_basics.validate.judging import JudgedExercise, judge_exercise
-from my_robot_basics.validate.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
-from my_robot_basics.validate.side_by_side import join_judged, split_exercise
+from my_robot_basics.validate.kernels.limits import MAX_NOTEBOOK_OUTPUT_CHARACTERS
+from my_robot_basics.validate.lessons.cells import KEY, grade_id, role
+from my_robot_basics.validate.lessons.exercises import Exercise, find_exercises
 from my_robot_basics.validate.together import gather_or_cancel
-from my_robot_basics.validate.verdict import Verdict, fail_all_checks, write_verdict
+from my_robot_basics.validate.verdicts.budget import Budget
+from my_robot_basics.validate.verdicts.judging import JudgedExercise, judge_exercise
+from my_robot_basics.validate.verdicts.side_by_side import join_judged, split_exercise
+from my_robot_basics.validate.verdicts.verdict import Verdict, fail_all_checks, write_verdict
 from nbformat import NotebookNode
 
 from grader.common.pool import Pool

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from my_robot_basics.validate.cells import KEY
+from my_robot_basics.validate.lessons.cells import KEY
 from nbformat import NotebookNode
 
 from grader.common.checkout import ROOT

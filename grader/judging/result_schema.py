@@ -11,7 +11,7 @@ from typing import Any
 
 import jsonschema
 import nbformat
-from my_robot_basics.validate.cells import KEY, grade_id, role
+from my_robot_basics.validate.lessons.cells import KEY, grade_id, role
 from nbformat import NotebookNode
 from nbformat.validator import get_validator
 

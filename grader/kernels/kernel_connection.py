@@ -4,9 +4,9 @@ from typing import cast
 
 import zmq.asyncio
 from jupyter_client import AsyncKernelClient, AsyncKernelManager
-from my_robot_basics.validate.connecting import wait_for_sockets, wait_for_welcome
-from my_robot_basics.validate.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
-from my_robot_basics.validate.messages import Messages, parse_message_part
+from my_robot_basics.validate.kernels.connecting import wait_for_sockets, wait_for_welcome
+from my_robot_basics.validate.kernels.limits import MAX_MESSAGE_BYTES, MAX_MESSAGES_WAITING
+from my_robot_basics.validate.kernels.messages import Messages, parse_message_part
 
 from grader.common.errors import RoomFailure
 

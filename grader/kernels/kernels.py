@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import cast
 
 from jupyter_client.provisioning import LocalProvisioner
-from my_robot_basics.validate.messages import OnInput
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.timeouts import (
+from my_robot_basics.validate.kernels.messages import OnInput
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.kernels.timeouts import (
     UsedSec,
     wait_for_end,
     wait_for_end_by_cpu_time,

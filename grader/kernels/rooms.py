@@ -8,9 +8,9 @@ from pathlib import Path
 from my_robot_basics.exchange.endings import signal_name
 from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
-from my_robot_basics.validate.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
-from my_robot_basics.validate.outputs import CellRun
-from my_robot_basics.validate.questions import (
+from my_robot_basics.validate.kernels.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
+from my_robot_basics.validate.kernels.outputs import CellRun
+from my_robot_basics.validate.kernels.questions import (
     STUDENT_COMES,
     STUDENT_GOES,
     TEST_RECEIVES,

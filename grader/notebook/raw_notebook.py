@@ -9,7 +9,7 @@ import secrets
 from pathlib import Path
 
 from my_robot_basics.language.speaking import KEY, LANGUAGE
-from my_robot_basics.validate.pictures import KINDS, why_not_shown
+from my_robot_basics.validate.kernels.pictures import KINDS, why_not_shown
 
 from grader.common.errors import UnreadableSubmission
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import jsonschema
 import nbformat
 from my_robot_basics.language.speaking import KEY, LANGUAGE
-from my_robot_basics.validate.pictures import KINDS
+from my_robot_basics.validate.kernels.pictures import KINDS
 from nbformat import NotebookNode
 
 from grader.common.errors import CourseError, UnreadableSubmission

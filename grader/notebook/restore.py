@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import nbformat
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import LANGUAGE, language_of
-from my_robot_basics.validate.cells import (
+from my_robot_basics.validate.lessons.cells import (
     KEY,
     RELEASED,
     fingerprint,

@@ -14,7 +14,7 @@ from bleach.html5lib_shim import Filter
 from jinja2 import pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
-from my_robot_basics.validate.pictures import KINDS
+from my_robot_basics.validate.kernels.pictures import KINDS
 from nbconvert import HTMLExporter
 from nbconvert import filters as nbconvert_filters
 

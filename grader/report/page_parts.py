@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.sentences import REASON
 from my_robot_basics.language.speaking import in_language, sentences
-from my_robot_basics.validate.pictures import KINDS, why_not_shown
-from my_robot_basics.validate.titles import title_of_check, title_of_failure
-from my_robot_basics.validate.trouble import TROUBLE
+from my_robot_basics.validate.kernels.pictures import KINDS, why_not_shown
+from my_robot_basics.validate.lessons.titles import title_of_check, title_of_failure
+from my_robot_basics.validate.verdicts.trouble import TROUBLE
 from nbconvert.filters import strip_ansi
 from nbformat import NotebookNode
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from jinja2 import Template
 from my_robot_basics.language.catalogues import ENGLISH, LOCALE, read_translations
 from my_robot_basics.language.speaking import in_language
-from my_robot_basics.validate.cells import title_of
+from my_robot_basics.validate.lessons.cells import title_of
 
 from grader.common.files import make_folder_for, write_whole
 from grader.common.text import printable

@@ -70,7 +70,7 @@ def find_similar(course: Course, assignments: Iterable[str]) -> SimilarAnswers:
 def _answers(course: Course, assignment: str) -> dict[str, tuple[str, dict[str, str]]]:
     """Return for each exercise the released text, and the students' answers."""
     # imported late: it takes long, and is not needed if nothing was graded
-    from my_robot_basics.validate.exercises import find_exercises
+    from my_robot_basics.validate.lessons.exercises import find_exercises
 
     released = course.release(assignment)
     given = {

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from statistics import mean, median
 
-from my_robot_basics.validate.titles import title_of_check
+from my_robot_basics.validate.lessons.titles import title_of_check
 from nbformat import NotebookNode
 
 from grader.course import Course

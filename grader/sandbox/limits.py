@@ -1,4 +1,4 @@
-"""What a submission may use, and why so much; a cell's limits are in `validate/limits.py`."""
+"""What a submission may use, and why so much; `validate.kernels.limits` has a cell's limits."""
 
 import resource
 

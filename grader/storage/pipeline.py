@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import nbformat
-from my_robot_basics.validate.verdict import fail_all_checks
+from my_robot_basics.validate.verdicts.verdict import fail_all_checks
 from nbformat import NotebookNode
 from nbformat.validator import normalize
 

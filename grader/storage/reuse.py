@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 import nbformat
-from my_robot_basics.validate.verdict import SCORED
+from my_robot_basics.validate.verdicts.verdict import SCORED
 from nbformat import NotebookNode
 
 from grader.common.versions import software_hash

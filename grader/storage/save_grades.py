@@ -1,7 +1,7 @@
 """The preprocessor that writes the verdicts of a notebook into nbgrader's database."""
 
 import nbformat
-from my_robot_basics.validate.verdict import SCORED
+from my_robot_basics.validate.verdicts.verdict import SCORED
 from nbformat import NotebookNode
 from nbgrader.preprocessors import SaveAutoGrades
 

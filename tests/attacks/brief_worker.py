@@ -2,7 +2,7 @@
 
 import sys
 
-from my_robot_basics.validate import limits
+from my_robot_basics.validate.kernels import limits
 
 limits.STUDENT_CELL_TIMEOUT_SEC /= 2
 limits.REPLY_TIMEOUT_SEC /= 2

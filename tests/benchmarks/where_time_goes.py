@@ -20,7 +20,7 @@ import nbformat
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / 'tests')]
 
-from my_robot_basics.validate import judging
+from my_robot_basics.validate.verdicts import judging
 from sample_class import PATHS, assignment_of
 
 from grader.course import Course

@@ -1,14 +1,35 @@
 """Judge the exercises of a lesson: what the grader and *Validate* have in common.
 
-- A notebook: `cells` says what each cell is for, `exercises` what to run of it, `names` which
-  names a cell needs.
-- Running its cells: `messages` and `outputs` collect their outputs, `timeouts` waits for their
-  end, `questions` has a check's requests to the student's kernel, `verdict` judges one check and
-  `judging` an exercise.
-- *Validate* itself: `lesson` reads a student's notebook, `rooms`, `kernel`, `forks` and
-  `forkserver` start its kernels, `short_budget` limits the time of each cell, `checks_budget`
-  that of the checks, `overdue` reports what was given up, `cell_names` names cells as students
-  find them, `run` does all of it, `report` is the result, with `check_feedback` of each cell,
-  `as_text` prints it, and `server` with `labextension/` shows it in JupyterLab.
-- Used by all of them: `errors`, `limits`, `text`, `titles`, `together`.
+The code is in packages and a few modules; each imports only from those before it in LAYERS:
+
+- `errors`: Errors that are not a verdict about an answer.
+- `text`: What students wrote, made safe to print and to show.
+- `together`: Runs several awaitables concurrently.
+- `lessons`: A notebook: the role of each cell, its exercises, and the names that a cell needs.
+- `kernels`: Kernels on the student's machine, and what a cell prints, in bounds and in time.
+- `verdicts`: Judges a check and a whole exercise, in rooms that the caller opens.
+- `reports`: The results for each exercise and check, and how they read.
+- `progress`: Which exercises have passed, remembered on the student's own machine.
+- `running`: *Validate* itself: opens rooms, judges a lesson in them, returns its report.
+- `served`: Files that a Jupyter server serves.
+- `progress_server`: A student's progress, for the list above the contents page.
+- `server`: Shows *Validate* and the progress in JupyterLab, with `labextension/`.
+- `__main__`: `./course validate`.
 """
+
+LAYERS = (
+    'errors',
+    'text',
+    'together',
+    'lessons',
+    'kernels',
+    'verdicts',
+    'reports',
+    'progress',
+    'running',
+    'served',
+    'progress_server',
+    'server',
+    '__main__',
+)
+"""The parts, lowest layer first."""

@@ -14,11 +14,11 @@ from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.speaking import in_language_here
 from my_robot_basics.session.arguments import Arguments
 from my_robot_basics.validate.errors import CourseError
-from my_robot_basics.validate.forks import ForkServer
-from my_robot_basics.validate.report_words import front_end_texts
+from my_robot_basics.validate.kernels.forks import ForkServer
+from my_robot_basics.validate.reports.report_words import front_end_texts
 
 if TYPE_CHECKING:
-    from my_robot_basics.validate.report import Report
+    from my_robot_basics.validate.reports.report import Report
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -41,9 +41,9 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         with ForkServer() as server:
             # imported here, while the fork server does its own imports
-            from my_robot_basics.validate.as_text import as_text
-            from my_robot_basics.validate.remembering import remember
-            from my_robot_basics.validate.run import validate
+            from my_robot_basics.validate.progress.remembering import remember
+            from my_robot_basics.validate.reports.as_text import as_text
+            from my_robot_basics.validate.running.run import validate
 
             def tell(report: 'Report') -> None:
                 told.append(remember(report, options.notebook))

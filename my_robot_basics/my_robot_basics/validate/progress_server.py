@@ -6,8 +6,8 @@ from jupyter_server.base.handlers import APIHandler
 from tornado import web
 
 from my_robot_basics.validate.errors import CourseError
-from my_robot_basics.validate.passed_answers import default_path
-from my_robot_basics.validate.progress import read_progress
+from my_robot_basics.validate.progress.passed_answers import default_path
+from my_robot_basics.validate.progress.progress import read_progress
 from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/progress'

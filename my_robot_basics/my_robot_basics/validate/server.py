@@ -19,7 +19,7 @@ from tornado import iostream, web
 
 from my_robot_basics.language.speaking import language_of
 from my_robot_basics.validate import progress_server
-from my_robot_basics.validate.report_words import front_end_texts
+from my_robot_basics.validate.reports.report_words import front_end_texts
 from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/validate'

@@ -22,7 +22,7 @@ def watch() -> None:
 def instead() -> str:
     """Return what is said instead of the failure of the check that runs now, or ''."""
     from my_robot_basics.feedback.unanswered import PLACEHOLDER, say_unanswered
-    from my_robot_basics.validate.cells import KEY, RECORD, fingerprint
+    from my_robot_basics.validate.lessons.cells import KEY, RECORD, fingerprint
 
     lesson = _lesson()
     marks = _answer_before(lesson.get('cells', ()), next(reversed(_run), ''))

@@ -1,0 +1,1 @@
+"""A notebook: the role of each cell, its exercises, and the names that a cell needs."""

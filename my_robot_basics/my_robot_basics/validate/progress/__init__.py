@@ -1,0 +1,1 @@
+"""Which exercises have passed, remembered on the student's own machine."""

@@ -1,0 +1,1 @@
+"""The results for each exercise and check, and how they read."""

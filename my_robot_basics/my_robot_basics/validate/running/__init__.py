@@ -1,0 +1,1 @@
+"""*Validate* itself: opens rooms, judges a lesson in them, returns its report."""

@@ -1,0 +1,1 @@
+"""Judges a check and a whole exercise, in rooms that the caller opens."""
