@@ -177,8 +177,9 @@ def test_attacks_leave_no_file_process_or_connection(graded):
     assert left == []
 
 
-def test_html_of_an_attack_is_escaped_in_the_feedback(graded):
-    page = graded.pages['html_and_escapes']
+@pytest.mark.parametrize('name', ['html_and_escapes'])
+def test_html_of_an_attack_is_escaped_in_the_feedback(graded, name):
+    page = graded.pages[name]
     assert 'alert' in page  # it is shown, as text
     assert re.findall(r'<script|<img src=x|<svg[^>]*>.*alert|\x1b|\u202e', page) == []
 
