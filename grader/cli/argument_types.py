@@ -1,11 +1,14 @@
 """Types of arguments of `./course`, with messages for invalid ones."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime
 
 from grader.cli.verbs import NO_DATE
 from grader.common.argument_values import RECORDED, local_time
+
+AddVerb = Callable[..., argparse.ArgumentParser]
+"""Takes a verb's name and its `help`; returns the parser of its arguments."""
 
 
 class VerbParser(argparse.ArgumentParser):

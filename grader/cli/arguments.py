@@ -6,11 +6,9 @@ Parsing them imports nothing that grades: `tests/test_command_line.py` lists wha
 import argparse
 from pathlib import Path
 
-from my_robot_basics.language.catalogues import ENGLISH, LOCALE, languages
-
-from grader.cli import verbs
-from grader.cli.argument_types import VerbParser, at_least_one, date, hexadecimal
-from grader.common.argument_values import PLATFORMS, RECORDED
+from grader.cli import grading_arguments, verbs
+from grader.cli.argument_types import AddVerb, VerbParser, date
+from grader.common.argument_values import PLATFORMS
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -22,6 +20,19 @@ def make_parser() -> argparse.ArgumentParser:
         description = f'{help[0].upper()}{help[1:]}.'
         return subparsers.add_parser(name, help=help, description=description)
 
+    # in the order in which --help lists them
+    _add_authoring(add)
+    _add_collecting(add)
+    grading_arguments.add_grade(add)
+    grading_arguments.add_serve(add)
+    _add_scores(add)
+    _add_handing_back(add)
+    _add_trying(add)
+    return parser
+
+
+def _add_authoring(add: AddVerb) -> None:
+    """Add the verbs that make what students get."""
     verb = add('release', help="make the students' notebooks/ from solutions/")
     verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
     verb.add_argument(
@@ -46,6 +57,9 @@ def make_parser() -> argparse.ArgumentParser:
     verb = add('translate', help='bring the catalogues of other languages up to date')
     verb.set_defaults(run=verbs.run_translate)
 
+
+def _add_collecting(add: AddVerb) -> None:
+    """Add the verbs for what students hand in, and until when."""
     verb = add('collect', help='collect a folder or an archive of submissions')
     text = 'what came in: notebooks named STUDENT_ASSIGNMENT.ipynb, or as a platform names them'
     verb.add_argument('source', type=Path, metavar='FOLDER|ZIP|TAR', help=text)
@@ -68,58 +82,9 @@ def make_parser() -> argparse.ArgumentParser:
     verb.add_argument('--student', metavar='ID', help='extend it for this student alone')
     verb.set_defaults(run=verbs.run_due)
 
-    verb = add('grade', help='grade what is in gradebook/submitted/')
-    verb.add_argument('assignment', nargs='?', metavar='ASSIGNMENT', help='only this one')
-    verb.add_argument('--student', metavar='ID', help='only this student')
-    verb.add_argument(
-        '--seed',
-        type=hexadecimal,
-        metavar=f'HEX|{RECORDED}',
-        help='grade once more with these inputs of hidden tests, and only compare',
-    )
-    verb.add_argument('--store', action='store_true', help='store the scores of --seed HEX')
-    verb.add_argument(
-        '--trust-students',
-        action='store_true',
-        help='grade even where this machine has no sandbox for their code (./course doctor)',
-    )
-    where = verb.add_mutually_exclusive_group()
-    where.add_argument(
-        '--workers',
-        type=at_least_one,
-        metavar='N',
-        help='grade in so many processes; without it, one for each core',
-    )
-    where.add_argument(
-        '--dask',
-        metavar='tls://HOST:8786',
-        help='grade on the workers of this Dask scheduler; on this machine, tcp://127.0.0.1:8786',
-    )
-    for option in ('--tls-ca-file', '--tls-cert', '--tls-key'):
-        verb.add_argument(option, metavar='FILE', help='for --dask tls://…, as dask takes it')
-    verb.add_argument(
-        '--force', action='store_true', help='grade again what has not changed since, too'
-    )
-    text, known = 'of the page that reports the run', [ENGLISH, *languages(LOCALE)]
-    verb.add_argument('--language', choices=known, default=ENGLISH, help=text)
-    verb.set_defaults(run=verbs.run_grade, begin=verbs.begin_grade)
 
-    verb = add('serve', help='grade what is handed in, as soon as it is')
-    verb.add_argument(
-        'folder',
-        nargs='?',
-        type=Path,
-        metavar='FOLDER',
-        help="where submissions are put: the inbound folder of nbgrader's exchange, or another",
-    )
-    verb.add_argument(
-        '--status', action='store_true', help='say what is waiting, and what is done'
-    )
-    verb.add_argument('--once', action='store_true', help='end when nothing is left to grade')
-    verb.add_argument('--workers', type=at_least_one, metavar='N', help='as for grade')
-    verb.add_argument('--trust-students', action='store_true', help='as for grade')
-    verb.set_defaults(run=verbs.run_serve)
-
+def _add_scores(add: AddVerb) -> None:
+    """Add `scores`, in all its forms."""
     verb = add('scores', help='write gradebook/scores.csv')
     verb.add_argument(
         'assignment',
@@ -152,6 +117,9 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_scores)
 
+
+def _add_handing_back(add: AddVerb) -> None:
+    """Add the other verbs for what students get back."""
     verb = add('feedback', help='write a page of feedback for each submission')
     verb.add_argument(
         '--zip',
@@ -167,13 +135,11 @@ def make_parser() -> argparse.ArgumentParser:
     )
     verb.set_defaults(run=verbs.run_solutions)
 
-    for name, run, text in (
-        ('demo', verbs.run_demo, 'grade a sample class, to see all of it in about a minute'),
-        (
-            'doctor',
-            verbs.run_doctor,
-            'show what isolates student code on this machine, and what is missing',
-        ),
-    ):
-        add(name, help=text).set_defaults(run=run)
-    return parser
+
+def _add_trying(add: AddVerb) -> None:
+    """Add the verbs that try the grader and this machine."""
+    verb = add('demo', help='grade a sample class, to see all of it in about a minute')
+    verb.set_defaults(run=verbs.run_demo)
+
+    text = 'show what isolates student code on this machine, and what is missing'
+    add('doctor', help=text).set_defaults(run=verbs.run_doctor)
