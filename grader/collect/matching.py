@@ -9,14 +9,10 @@ from pathlib import Path
 
 from grader.collect.companions import Companions, find_companions
 from grader.collect.incoming import Incoming, is_notebook
+from grader.collect.left_over import Beside, left_beside, left_of_packages
 from grader.collect.naming import Owner
 from grader.collect.owners import find_owners, late_remark
-from grader.collect.package_folders import (
-    NO_NOTEBOOK,
-    group_by_key,
-    needs_attention,
-    split_packages,
-)
+from grader.collect.package_folders import group_by_key, split_packages
 from grader.collect.platforms import PlatformLabel
 from grader.collect.untaken import UntakenFile, UntakenReasons
 from grader.collect.uploads import is_wanted
@@ -62,58 +58,60 @@ def match(
     found, folders = split_packages(
         found, {each for several in asked_for.values() for each in several}
     )
-    beside_notebooks = group_by_key(folders)
-    rest = [UntakenFile(each, each.problem) for each in found if each.problem]
-    beside: dict[tuple[str, ...], dict[str, Incoming]] = defaultdict(dict)
+    beside, unwanted = _split_by_folder(found)
+    owners, remarks, problems = find_owners(found, assignments, students)
+    by_key = group_by_key(folders)
+    companions = {
+        notebook: find_companions(
+            notebook,
+            owner,
+            beside=beside[notebook.parts[:-1]],
+            asked_for=asked_for.get(owner.assignment, ()),
+            packages=by_key,
+        )
+        for notebook, owner in owners.items()
+    }
+    hand_ins = [
+        _match(notebook, owners[notebook], with_it, remarks[notebook], file_times=file_times)
+        for notebook, with_it in companions.items()
+    ]
+    broken = {each: each.problem for each in found if each.problem}
+    reasons = UntakenReasons(owners, assignments, (*problems, *broken), is_all=is_all)
+    rest = [UntakenFile(each, why) for each, why in (*broken.items(), *problems.items())]
+    rest += map(reasons.unwanted, unwanted)
+    rest += left_of_packages(folders, companions.values())
+    rest += left_beside(beside, owners, companions.values(), reasons)
+    return _sort_hand_ins(hand_ins, rest), rest
+
+
+def _split_by_folder(found: Iterable[Incoming]) -> tuple[Beside, list[Incoming]]:
+    """Return readable files that are no notebooks: wanted ones by folder, and all others."""
+    beside: Beside = defaultdict(dict)
     unwanted = []
     for each in (each for each in found if not each.problem and not is_notebook(each)):
         if is_wanted(each.parts[-1:]):
             beside[each.parts[:-1]][each.parts[-1]] = each
         else:
             unwanted.append(each)
-    owners, remarks, problems = find_owners(found, assignments, students)
-    rest += [UntakenFile(each, problem) for each, problem in problems.items()]
-    unread = (each for each in found if each.problem)
-    reasons = UntakenReasons(owners, assignments, (*problems, *unread), is_all=is_all)
-    rest += map(reasons.unwanted, unwanted)
-    hand_ins, used, others = [], set[Incoming](), dict[Incoming, str]()
-    for notebook, owner in owners.items():
-        with_it = find_companions(
-            notebook,
-            owner,
-            beside=beside[notebook.parts[:-1]],
-            asked_for=asked_for.get(owner.assignment, ()),
-            packages=beside_notebooks,
-        )
-        handed_in = _submission_time(notebook, owner, with_it, file_times=file_times)
-        late = '' if handed_in else late_remark(notebook, owner)
-        hand_ins.append(
-            MatchedFile(
-                student_id=owner.student_id,
-                assignment=owner.assignment,
-                notebook=notebook,
-                extra=with_it.extra_files(),
-                handed_in=handed_in,
-                label=owner.label,
-                remark='; '.join(filter(None, (_empty_remark(notebook), late, remarks[notebook]))),
-                secret=with_it.secret.readable if with_it.secret else None,
-                left_out=with_it.left_out(),
-            )
-        )
-        used |= with_it.used_files()
-        others |= with_it.foreign
-        for there, chosen in with_it.packages.values():
-            rest += [
-                UntakenFile(e, why, needs_attention=needs_attention(why)) for e, why in chosen.left
-            ]
-            folders = [each for each in folders if each is not there]
-    rest += [UntakenFile(each, NO_NOTEBOOK) for folder in folders for each in folder.members]
-    rest += [UntakenFile(each, why) for each, why in others.items()]
-    uploads = {notebook.parts[:-1] for notebook, owner in owners.items() if owner.label}
-    for folder, files in beside.items():
-        left = (each for each in files.values() if each not in used and each not in others)
-        rest += [reasons.unused(each, in_upload=folder in uploads) for each in left]
-    return _sort_hand_ins(hand_ins, rest), rest
+    return beside, unwanted
+
+
+def _match(
+    notebook: Incoming, owner: Owner, with_it: Companions, remark: str, *, file_times: bool
+) -> MatchedFile:
+    handed_in = _submission_time(notebook, owner, with_it, file_times=file_times)
+    late = '' if handed_in else late_remark(notebook, owner)
+    return MatchedFile(
+        student_id=owner.student_id,
+        assignment=owner.assignment,
+        notebook=notebook,
+        extra=with_it.extra_files(),
+        handed_in=handed_in,
+        label=owner.label,
+        remark='; '.join(filter(None, (_empty_remark(notebook), late, remark))),
+        secret=with_it.secret.readable if with_it.secret else None,
+        left_out=with_it.left_out(),
+    )
 
 
 def _empty_remark(notebook: Incoming) -> str:
