@@ -290,3 +290,29 @@ def test_a_file_with_a_time_beyond_the_calendar_is_taken_without_that_time(
     before = datetime.now(UTC)
     assert all(each.changed <= before for each in found if owner == ALICE)
     assert (found[0].changed is None) == (owner != ALICE)
+
+
+@needs_root
+def test_sparse_archives_of_one_student_are_read_up_to_a_limit_together(
+    inbound, tmp_path, monkeypatch
+):
+    """They take no space on the student's disk, and to copy thousands of them takes hours."""
+    monkeypatch.setattr(live_folders, 'MAX_ARCHIVE_BYTES', 3_000_000)
+    monkeypatch.setitem(live_folders.ONE, 'bytes', 5_000_000)
+    folder = submit(inbound, 'alice', ALICE)
+    for number, size in enumerate([4_000_000, *[2_400_000] * 5]):
+        path = folder / f'sparse{number}.zip'
+        with path.open('wb') as file:
+            file.truncate(size)
+        os.chown(path, ALICE, ALICE)
+    aside = tmp_path / 'aside'
+    aside.mkdir()
+    found = {
+        each.parts[-1]: each.problem for each in read_inbound_entry(inbound, folder.name, aside)
+    }
+    read = [name for name, problem in found.items() if problem.startswith('broken')]
+    unread = [name for name, problem in found.items() if 'what came before it' in problem]
+    assert read == ['sparse1.zip', 'sparse2.zip']
+    assert unread == ['sparse3.zip', 'sparse4.zip', 'sparse5.zip']
+    assert found['sparse0.zip'].startswith('over 3 MB')
+    assert found[f'{LESSON}.ipynb'] == ''

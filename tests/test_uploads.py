@@ -128,7 +128,7 @@ def test_an_archive_bomb_of_one_student_leaves_room_for_others(source, tmp_path,
 
 
 def test_all_archives_of_an_upload_share_one_size_limit(source, tmp_path, monkeypatch):
-    monkeypatch.setattr(uploads, 'ALL', {'files': 100, 'bytes': 1_000})
+    monkeypatch.setattr(uploads, 'ALL', {'files': 100, 'bytes': 1_000, 'archive_bytes': 10_000})
     for student in ('ada', 'bob'):
         (source / f'{student}.zip').write_bytes(zip_of(a_py='x' * 600))
     found = seen(source, tmp_path)

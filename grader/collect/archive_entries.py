@@ -145,7 +145,7 @@ def _tar_entries(
 
 def _decompress(archive: Path, plain: Path, *, name: str, left: UnpackLimits) -> None:
     """Decompress a tar; all its bytes count, because there may be a thousand like it."""
-    most = min(left.bytes, left.tar_bytes)
+    most = min(left.bytes, left.archive_bytes)
     if most <= 0:
         raise ArchiveRefused(
             'not unpacked, because what came before it was too large together: a bomb?'
@@ -156,7 +156,7 @@ def _decompress(archive: Path, plain: Path, *, name: str, left: UnpackLimits) ->
             is_whole = copy_at_most(packed, unpacked, most=most)
         finally:
             read = unpacked.tell() + (0 if is_whole else CHUNK)
-            left.tar_bytes -= min(left.tar_bytes, read)
+            left.archive_bytes -= min(left.archive_bytes, read)
     if not is_whole:
         raise ArchiveRefused(f'over {most / 1e6:.0f} MB once unpacked: a bomb?')
 

@@ -142,17 +142,16 @@ class LiveFolder:
     def _copy(
         self, descriptor: int, before: os.stat_result, is_archive: bool
     ) -> tuple[Path | None, str]:
-        most = MAX_ARCHIVE_BYTES if is_archive else min(MAX_FILE_BYTES, self.left.bytes)
+        allowed = MAX_ARCHIVE_BYTES if is_archive else MAX_FILE_BYTES
+        # not even read: a sparse file takes no space on its owner's disk
+        if problem := self.left.claim(before.st_size, most=allowed, is_archive=is_archive):
+            return None, problem
         copied = 0
         with tempfile.NamedTemporaryFile(dir=self.aside, delete=False) as target:
-            while copied <= most and (chunk := os.read(descriptor, _CHUNK)):
+            while copied <= before.st_size and (chunk := os.read(descriptor, _CHUNK)):
                 target.write(chunk)
                 copied += len(chunk)
-        self.left.bytes -= 0 if is_archive else copied
-        problem = ''
-        if copied > most:
-            problem = f'over {most / 1e6:.0f} MB: ask for it without outputs'
-        elif _written(os.fstat(descriptor)) != _written(before) or copied != before.st_size:
+        if _written(os.fstat(descriptor)) != _written(before) or copied != before.st_size:
             problem = CHANGED
         if problem:
             Path(target.name).unlink()
