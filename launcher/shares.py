@@ -1,12 +1,13 @@
 """What an editable install lacks in .venv: ROS's index, Jupyter's files, and the tools."""
 
+import json
 import os
 import re
 import shutil
 from pathlib import Path
 
 from launcher.environment import Environment
-from launcher.venv_inputs import KERNELS, TOOLS, UNDERLAY
+from launcher.venv_inputs import KERNELS, SAFE_PATH, TOOLS, UNDERLAY
 
 TOOL = r"""#!/bin/sh
 # PYTHON_ARGCOMPLETE_OK
@@ -50,9 +51,26 @@ def install_jupyter_files(environment: Environment) -> None:
     shutil.copy(button / 'server.json', server / 'my_robot_basics.json')
     (venv / 'etc/ipython').mkdir(parents=True, exist_ok=True)
     (venv / 'etc/ipython/ipython_kernel_config.py').write_text(KERNELS, encoding='utf-8')
+    make_kernelspec_safe(venv / 'share/jupyter/kernels/python3/kernel.json')
     if environment.has_grader:
         (venv / KERNEL).mkdir(parents=True, exist_ok=True)
         shutil.copy(environment.root / 'grader/kernels/kernelspec/kernel.json', venv / KERNEL)
+
+
+def make_kernelspec_safe(file: Path) -> None:
+    """Make a kernel start with SAFE_PATH: Jupyter starts it as soon as a notebook is opened.
+
+    The file is replaced, not changed: uv links the files of .venv to those of its cache.
+    """
+    if not file.exists():
+        return
+    spec = json.loads(file.read_text(encoding='utf-8'))
+    python, *options = spec['argv']
+    if SAFE_PATH not in options:
+        spec['argv'] = [python, SAFE_PATH, *options]
+        part = file.with_name(f'{file.name}.part')
+        part.write_text(json.dumps(spec, indent=1), encoding='utf-8')
+        os.replace(part, file)
 
 
 def make_symlink(link: Path, target: Path) -> None:

@@ -24,6 +24,9 @@ esac
 """What a workspace's setup.bash sources as its underlay: any shell can run it."""
 KERNELS = "c.InteractiveShellApp.extensions.append('my_robot_basics.live.extension')\n"
 """The configuration of each IPython kernel of .venv."""
+SAFE_PATH = '-P'
+"""Python's option with which a kernel imports nothing from the notebook's folder at its start:
+else opening a notebook of somebody else would run a file `ipykernel_launcher.py` beside it."""
 FOREIGN_HEADERS = r'(INTERFACE_INCLUDE_DIRECTORIES) "/opt/python/[^"]*"'
 """Header paths of Python and NumPy on the machine that built the wheels: CMake refuses folders
 that do not exist. A build of such a part adds its own Python's headers anyway."""
@@ -52,7 +55,7 @@ def packages_inputs(root: str) -> str:
         files += ['pyproject.toml', 'grader/kernels/kernelspec/kernel.json']
     with open(f'{root}/{interfaces_wheel(root)}', 'rb') as file:
         wheel = f'{zlib.crc32(file.read()):08x}'  # hashlib takes longer to import
-    shares = [UNDERLAY, KERNELS, str(TOOLS), FOREIGN_HEADERS, LINE, WAITS]
+    shares = [UNDERLAY, KERNELS, SAFE_PATH, str(TOOLS), FOREIGN_HEADERS, LINE, WAITS]
     return ''.join([*(_text(root, name) for name in files), wheel, *shares])
 
 

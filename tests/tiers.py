@@ -44,8 +44,8 @@ STARTING_FILES = frozenset(
     live_kernel live_kernel_ends
     live_lessons live_neighbours
     live_qos_pairs live_refusals live_runner live_sliders live_target logs main
-    manual_grading nbgrader_commands nbgrader_contract nodes ordinary_events package
-    partial preprocessors readme release replay reuse reuse_ends rooms
+    manual_grading nbgrader_commands nbgrader_contract nodes opened_notebooks ordinary_events
+    package partial preprocessors readme release replay reuse reuse_ends rooms
     rooms_hostile rooms_opening ros2_action ros2_completion
     ros2_discovery ros2_graph ros2_interfaces ros2_main ros2_notebook ros2_real ros2_run
     ros2_service ros2_shell ros2_streams same_scores survival synthetic_class temporary_folders

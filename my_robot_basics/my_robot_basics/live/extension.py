@@ -1,14 +1,19 @@
 """The IPython extension that each notebook kernel of this Python loads at its start.
 
+Files beside a notebook can be imported only once a cell is run, and replace no installed module: a
+kernel starts when a notebook is opened, and what a stranger put beside it must not run then.
+
 Importing `live` changes nothing. The first cell whose text names `live` sets the kernel up, before
 that cell runs, because it may initialise rclpy itself.
 """
 
 import re
+import sys
 from typing import Any
 
 from my_robot_basics.checks.clock import tick
 from my_robot_basics.checks.topics import untouched
+from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import LiveError
 
 _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')
@@ -24,7 +29,14 @@ def load_ipython_extension(shell: Any) -> None:
             shell.events.unregister('pre_run_cell', before_cell)
             _set_up()
 
+    def before_first_cell(_: Any) -> None:
+        shell.events.unregister('pre_run_cell', before_first_cell)
+        if '' not in sys.path:  # other programs may start a kernel without `-P`
+            sys.path.append('')
+
     shell.events.register('pre_run_cell', before_cell)
+    if not classroom.in_grading_room():  # rooms add the student's files themselves
+        shell.events.register('pre_run_cell', before_first_cell)
 
 
 def _set_up() -> None:
