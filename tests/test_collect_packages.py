@@ -7,6 +7,7 @@ import tarfile
 import zipfile
 
 import pytest
+from colcon_terminal import bash
 from my_robot_basics.session.package_files import MAX_FILES
 from package_maker import LESSON, PACKAGE, make_package, write_lesson
 
@@ -126,6 +127,21 @@ def test_a_package_is_collected_with_its_notebook(course, work, came_in, pack):
     assert submitted(course, student) - {'timestamp.txt'} == {NOTEBOOK, *FILES}
     assert [outcome for outcome, _ in said.values() if outcome != NEW] == []
     assert {*read(course, student).files} == FILES
+
+
+@pytest.mark.starts
+def test_colcon_in_a_workspace_with_the_course_runs_no_setup_py_that_was_handed_in(
+    course, work, came_in, tmp_path
+):
+    ran = tmp_path / 'ran'
+    (work / PACKAGE / 'setup.py').write_text(f'open({str(ran)!r}, "w")')
+    (work / PACKAGE / 'package.xml').write_text('<package/>')  # so colcon reads no name in it
+    folder_of_a_student(work, came_in)
+    rows(course, came_in)
+    assert f'{PACKAGE}/setup.py' in submitted(course, 'ada')
+    built = bash(course.root, 'colcon build --packages-select own')
+    assert 'Summary: 0 packages finished' in built.stdout, built.stdout
+    assert not ran.exists()
 
 
 def test_a_changed_file_of_a_package_makes_a_new_submission(course, work, came_in):
