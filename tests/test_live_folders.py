@@ -3,6 +3,7 @@
 import os
 import threading
 import time
+import zipfile
 from datetime import UTC, datetime
 
 import pytest
@@ -301,10 +302,7 @@ def test_sparse_archives_of_one_student_are_read_up_to_a_limit_together(
     monkeypatch.setitem(live_folders.ONE, 'bytes', 5_000_000)
     folder = submit(inbound, 'alice', ALICE)
     for number, size in enumerate([4_000_000, *[2_400_000] * 5]):
-        path = folder / f'sparse{number}.zip'
-        with path.open('wb') as file:
-            file.truncate(size)
-        os.chown(path, ALICE, ALICE)
+        sparse(folder / f'sparse{number}.zip', size, ALICE)
     aside = tmp_path / 'aside'
     aside.mkdir()
     found = {
@@ -316,3 +314,44 @@ def test_sparse_archives_of_one_student_are_read_up_to_a_limit_together(
     assert unread == ['sparse3.zip', 'sparse4.zip', 'sparse5.zip']
     assert found['sparse0.zip'].startswith('over 3 MB')
     assert found[f'{LESSON}.ipynb'] == ''
+
+
+def sparse(file, size, uid):
+    """Make a file of zeros, which takes no space on the disk."""
+    with file.open('wb') as opened:
+        opened.truncate(size)
+    os.chown(file, uid, uid)
+
+
+@needs_root
+def test_sparse_files_in_many_folders_of_one_student_do_not_fill_the_disk(
+    inbound, tmp_path, monkeypatch
+):
+    monkeypatch.setitem(live_folders.OF_USER, 'bytes', 1_000_000)
+    for number in range(3):
+        folder = submit(inbound, 'alice', ALICE)
+        sparse(folder / 'zeros.py', 450_000, ALICE)
+        folder.rename(f'{folder}{number}')
+    submit(inbound, 'bob', BOB, "bob's")
+    found = list(read_upload(inbound, tmp_path))
+    problems = [each.problem for each in found if each.parts[-1] == 'zeros.py']
+    assert problems[:2] == ['', '']
+    assert 'what came before it' in problems[2]
+    assert all(each.file for each in found if each.login == 'bob')
+
+
+@needs_root
+def test_all_archives_of_one_student_count_together(inbound, tmp_path, monkeypatch):
+    monkeypatch.setitem(live_folders.OF_USER, 'bytes', 1_000_000)
+    for student, uid in ('alice', ALICE), ('bob', BOB):
+        folder = submit(inbound, student, uid)
+        for number in range(3):
+            path = folder / f'{number}.zip'
+            with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED) as box:
+                box.writestr('zeros.py', bytes(400_000))
+            os.chown(path, uid, uid)
+    found = [each for each in read_upload(inbound, tmp_path) if each.parts[-1] == 'zeros.py']
+    taken = [(each.login, bool(each.file)) for each in found]
+    assert taken == [
+        (who, is_taken) for who in ('alice', 'bob') for is_taken in (True, True, False)
+    ]

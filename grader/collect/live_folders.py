@@ -10,14 +10,14 @@ import stat
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from grader.collect.archive_entries import ARCHIVE, MAX_PARTS
 from grader.collect.archives import MAX_FILE_BYTES
 from grader.collect.incoming import Incoming
-from grader.collect.unpack_limits import UnpackLimits
+from grader.collect.unpack_limits import OF_USER, ONE, UnpackLimits
 from grader.common.dates import utc_of
 from grader.common.errors import MACHINE_FULL
 
@@ -26,8 +26,6 @@ DEVICE = 'a device or the like: only files are taken'
 CHANGED = 'it was changed while it was read: collect again'
 MAX_ARCHIVE_BYTES = 500_000_000
 """A whole class's archive is smaller, and is in a folder that only the teacher writes to."""
-ONE = {'files': 5_000, 'bytes': 200_000_000}
-"""Limits for one student's archive or folder, which may include the course's whole bundle."""
 _FLAGS = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
 _CHUNK = 1 << 20
 
@@ -56,6 +54,7 @@ class LiveFolder:
     aside: Path
     left: UnpackLimits
     wanted: Callable[[tuple[str, ...]], bool]
+    of_users: dict[int, UnpackLimits] = field(default_factory=dict)
 
     def read(self, folder: Path, above: tuple[str, ...]) -> Iterator[Incoming]:
         """Yield copies of the files in a folder; only `folder` itself may be a link."""
@@ -135,9 +134,12 @@ class LiveFolder:
                 status.st_uid if foreign else None,
                 changed,
             )
-            own = foreign and within.uid is None
-            reader = replace(self, left=UnpackLimits(**ONE)) if own else self
-            yield from reader._entries(inner)
+            if foreign and within.uid is None:
+                whole = self.of_users.setdefault(status.st_uid, UnpackLimits(**OF_USER))
+                with whole.lend(**ONE) as left:
+                    yield from replace(self, left=left)._entries(inner)
+            else:
+                yield from self._entries(inner)
 
     def _copy(
         self, descriptor: int, before: os.stat_result, is_archive: bool

@@ -1,6 +1,14 @@
 """How much may be unpacked of an archive, and of the archives in it."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+ONE = {'files': 5_000, 'bytes': 200_000_000}
+"""Limits for one student's archive or folder, which may include the course's whole bundle."""
+OF_USER = {'files': 20_000, 'bytes': 1_000_000_000}
+"""The same for all folders of one user of this machine, and for all their archives: the exchange
+keeps every submission, and sparse files take no space on their owner's disk."""
 
 
 @dataclass
@@ -36,8 +44,17 @@ class UnpackLimits:
             self.bytes -= size
         return ''
 
-    def subtract_used(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
-        """Subtract what was used of a part."""
+    @contextmanager
+    def lend(self, *, files: int, bytes: int) -> Iterator['UnpackLimits']:
+        """Yield limits for one archive or folder; subtract what the block has used of them."""
+        left = self.part(files=files, bytes=bytes)
+        before = replace(left)
+        try:
+            yield left
+        finally:
+            self._subtract_used(before, left)
+
+    def _subtract_used(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
         self.files -= part.files - left.files
         self.bytes -= part.bytes - left.bytes
         self.archive_bytes -= part.archive_bytes - left.archive_bytes

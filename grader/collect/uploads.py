@@ -3,6 +3,7 @@
 import re
 import shutil
 import tempfile
+from collections import defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -10,10 +11,10 @@ from pathlib import Path
 from grader.collect.archive_entries import ARCHIVE
 from grader.collect.archives import unpack
 from grader.collect.incoming import Incoming, as_json, from_json
-from grader.collect.live_folders import ONE, LiveFolder
+from grader.collect.live_folders import LiveFolder
 from grader.collect.name_forms import strip_late_mark
 from grader.collect.platforms import label_in
-from grader.collect.unpack_limits import UnpackLimits
+from grader.collect.unpack_limits import OF_USER, ONE, UnpackLimits
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, ParsingFailed, parse
 from grader.notebook.submission import SECRET, TIMESTAMP
@@ -123,17 +124,17 @@ class _Opener:
         self, found: Iterator[Incoming], aside: Path, left: UnpackLimits
     ) -> Iterator[Incoming]:
         """Yield files; for an archive, the files in it."""
+        of_users: defaultdict[str, UnpackLimits] = defaultdict(lambda: UnpackLimits(**OF_USER))
         for each in found:
             if each.problem or each.is_litter or not ARCHIVE.search(each.parts[-1]):
                 yield from self.unpack_nested(each, aside, left, nested=1)
             else:
-                part = left.part(**ONE)
-                before = replace(part)
-                name = each.parts[-1]
-                yield from self.read_in_process(
-                    'unpack_nested', each, name, aside, part, LIMITS_OF_ONE
-                )
-                left.subtract_used(before, part)
+                whole = of_users[each.login] if each.login else left
+                with whole.lend(**ONE) as part:
+                    name = each.parts[-1]
+                    yield from self.read_in_process(
+                        'unpack_nested', each, name, aside, part, LIMITS_OF_ONE
+                    )
                 each.readable.unlink()
 
     def read_in_process(
@@ -168,11 +169,9 @@ class _Opener:
         elif nested > MAX_NESTED:
             yield replace(each, problem=f'more than {MAX_NESTED} archives within each other')
         else:
-            part = left.part(**ONE)
-            before = replace(part)
-            for inner in self.unpack_one(each, each.parts[-1], aside, part):
-                yield from self.unpack_nested(inner, aside, part, nested=nested + 1)
-            left.subtract_used(before, part)
+            with left.lend(**ONE) as part:
+                for inner in self.unpack_one(each, each.parts[-1], aside, part):
+                    yield from self.unpack_nested(inner, aside, part, nested=nested + 1)
 
     def unpack_one(
         self, outer: Incoming, name: str, aside: Path, left: UnpackLimits
