@@ -12,13 +12,14 @@ from my_robot_basics.exchange import responder
 from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.hidden_source import mark_hidden_part, without_hidden_part
 from my_robot_basics.validate.lessons.cells import role
+from nbformat.v4 import new_code_cell
 
 from grader.__main__ import main
 from grader.course import Course
 from grader.export.scores import write_scores
 from grader.grade import grade_all
 from grader.report.feedback import write_feedback
-from grader.storage.records import verdicts
+from grader.storage.records import graded_notebook, verdicts
 from grader.storage.submitted import find_submissions
 from grader.workers.workers import Workers
 
@@ -151,6 +152,30 @@ def test_a_visible_part_that_fails_later_is_shown_in_full(course, backend):
     assert found['double-check'].outcome == 'passed'
     assert found['double-hidden'].reason == 'expected 0, saw none: add it to itself'
     assert found['double-hidden'].details == ''
+
+
+CHOOSES = """
+BITS = range(16)
+
+def double(x):
+    if x > 9 and not any(f'b{k}' in globals() for k in BITS):
+        raise RuntimeError(' '.join(f"KeyError: 'b{k}'" for k in BITS if x >> k & 1))
+    return x + x
+"""
+"""Names as undefined those of the cells b0 to b15 that stand for the bits of a hidden input."""
+
+
+@pytest.mark.isolation
+def test_which_cells_run_does_not_depend_on_a_name_that_was_chosen_after_a_hidden_input(
+    course, backend
+):
+    notebook = answered(course, CHOOSES)
+    notebook.cells += [new_code_cell(f"b{k} = 1\nprint('bit {k}')") for k in range(16)]
+    submit(course, 'eve', notebook)
+    (row,) = grade_all(course, find_submissions(course), backend=backend)
+    assert row.stored.score == 3.0  # of all checks
+    shown = graded_notebook(course, 'eve', TOY).cells
+    assert sum(bool(cell.get('outputs')) for cell in shown if 'bit ' in cell.source) == 16
 
 
 @pytest.fixture

@@ -172,6 +172,14 @@ def test_a_plan_for_missing_names_adds_the_cells_that_bind_them(name, expected):
         assert sorted(sources(notebook, plan)) == sorted([*expected, *own])
 
 
+def test_a_plan_for_a_name_that_must_not_be_known_adds_all_cells_that_bind_any():
+    notebook = lesson(area='area = 1', at_start='print(1)', at_end='late = 2')
+    exercise, _ = find_exercises(notebook)
+    plan = plan_for_names(notebook, exercise, next(plans(notebook, exercise)), None)
+    assert {'shown = 1', 'late = 2'} <= {*sources(notebook, plan)}
+    assert 'print(1)' not in sources(notebook, plan)
+
+
 def test_a_lent_helper_brings_the_demonstrations_that_it_needs():
     notebook = lesson(area='def area(r): return h(r)', at_start='def h(r): return shown')
     first = next(plans(notebook, find_exercises(notebook)[0]))

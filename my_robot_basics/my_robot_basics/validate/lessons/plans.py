@@ -56,11 +56,12 @@ def plans(notebook: NotebookNode, exercise: Exercise) -> Iterator[Plan]:
 
 
 def plan_for_names(
-    notebook: NotebookNode, exercise: Exercise, plan: Plan, names: set[str]
+    notebook: NotebookNode, exercise: Exercise, plan: Plan, names: set[str] | None
 ) -> Plan | None:
     """Plan the answer with all demonstrations and the cells that bind the undefined `names`.
 
-    None if no cell that `plan` left out binds one of them.
+    If `names` is None, it is not known which: then all cells that bind any. Returns None if no
+    cell that `plan` left out binds one of them.
     """
     cells = notebook.cells
     more = _with_all_shown(cells, exercise)
@@ -69,6 +70,7 @@ def plan_for_names(
     if not (binds & {*more.cells, *others}) - {*plan.cells}:
         return None
     chosen = tuple(sorted({*more.cells, *others}))
+    names = _bound(cells, others) if names is None else names
     again = _cells_to_rerun(cells, exercise, chosen, names=names)
     return Plan(chosen, why='with what binds a name that it needs', again=again)
 
@@ -99,8 +101,9 @@ def _with_all_shown(cells: list[NotebookNode], exercise: Exercise) -> Plan:
     return Plan((*shown, *own), why='with all that the lesson shows')
 
 
-def _binds(cell: NotebookNode, names: set[str]) -> bool:
-    return bool(names_of(cell.source).bound & names)
+def _binds(cell: NotebookNode, names: set[str] | None) -> bool:
+    bound = names_of(cell.source).bound
+    return bool(bound if names is None else bound & names)
 
 
 def _end(exercise: Exercise) -> int:

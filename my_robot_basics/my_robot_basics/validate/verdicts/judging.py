@@ -100,10 +100,16 @@ async def _try_plan(
     return JudgedExercise(runs, checks)
 
 
-def _missing_names(judged: JudgedExercise) -> set[str]:
-    """Return the undefined names that made the answer raise when a check called it."""
+def _missing_names(judged: JudgedExercise) -> set[str] | None:
+    """Return the undefined names that made the answer raise when a check called it.
+
+    None for one that is only in a verdict's details: code that knows hidden inputs may have chosen
+    it by them, and the outputs of the cells that bind it would tell the student.
+    """
     lost = [verdict for verdict, _ in judged.checks.values() if verdict.outcome != 'passed']
-    return set().union(*(names_not_defined(f'{v.reason} {v.details}') for v in lost))
+    if any(names_not_defined(verdict.details) for verdict in lost):
+        return None
+    return set().union(*(names_not_defined(verdict.reason) for verdict in lost))
 
 
 def _points(judged: JudgedExercise) -> float:
