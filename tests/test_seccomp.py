@@ -20,14 +20,15 @@ X86_64, AARCH64 = 0xC000003E, 0xC00000B7
 ALLOW, KILL = 0x7FFF0000, 0x80000000
 EPERM, ENOSYS, EAFNOSUPPORT = 0x00050001, 0x00050026, 0x00050061
 HARMFUL = """
-acct add_key adjtimex bpf chroot clock_adjtime clock_settime clone3 delete_module fanotify_init
-finit_module fsconfig fsmount fsopen fspick init_module inotify_init1 io_setup io_uring_enter
-io_uring_register io_uring_setup ioperm iopl kcmp kexec_file_load kexec_load keyctl lookup_dcookie
-mbind memfd_create memfd_secret migrate_pages modify_ldt mount mount_setattr move_mount move_pages
-mq_open msgget name_to_handle_at open_by_handle_at open_tree perf_event_open personality
-pidfd_getfd pivot_root process_madvise process_vm_readv process_vm_writev ptrace quotactl
-quotactl_fd reboot remap_file_pages request_key semget setdomainname sethostname setns
-settimeofday shmget swapoff swapon sync syslog umount2 unshare uselib userfaultfd vhangup vmsplice
+acct add_key adjtimex bpf chroot clock_adjtime clock_settime clone3 delete_module fadvise64
+fanotify_init finit_module fsconfig fsmount fsopen fspick init_module inotify_init1 io_setup
+io_uring_enter io_uring_register io_uring_setup ioperm iopl kcmp kexec_file_load kexec_load
+keyctl lookup_dcookie mbind memfd_create memfd_secret migrate_pages mincore modify_ldt mount
+mount_setattr move_mount move_pages mq_open msgget name_to_handle_at open_by_handle_at open_tree
+perf_event_open personality pidfd_getfd pivot_root preadv2 process_madvise process_vm_readv
+process_vm_writev ptrace quotactl quotactl_fd reboot remap_file_pages request_key semget
+setdomainname sethostname setns settimeofday shmget swapoff swapon sync syslog umount2 unshare
+uselib userfaultfd vhangup vmsplice
 """.split()  # noqa: SIM905 - a list of that length is read more easily so
 """System calls that no room may make."""
 NEWEST = range(453, 600)

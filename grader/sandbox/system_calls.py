@@ -7,6 +7,8 @@ These are left out on purpose, though programs elsewhere use them:
 - memory outside of any process's own, which a limit on processes would miss: shmget, msgget,
   semget, mq_open, memfd_create, vmsplice. Python's multiprocessing uses /dev/shm for semaphores;
 - resources shared by the whole machine: io_setup, inotify_init, keyctl, sync;
+- which pages of a file are in memory: preadv2 with RWF_NOWAIT, mincore, fadvise64 to evict them.
+  All rooms read the same files: code left a hidden input there, and the next hand-in printed it;
 - other processes' memory, namespaces, mounts, the machine's clock, name and modules, tracing;
 - clone3, whose flags a filter can't read: the C library then calls clone.
 """
@@ -21,11 +23,11 @@ ALLOWED: dict[str, int] = dict(  # noqa: C408 - it reads better so
     utime=132, mknod=133, statfs=137, fstatfs=138, setxattr=188, lsetxattr=189,
     fsetxattr=190, getxattr=191, lgetxattr=192, fgetxattr=193, listxattr=194,
     llistxattr=195, flistxattr=196, removexattr=197, lremovexattr=198, fremovexattr=199,
-    getdents64=217, fadvise64=221, utimes=235, openat=257, mkdirat=258, mknodat=259,
+    getdents64=217, utimes=235, openat=257, mkdirat=258, mknodat=259,
     fchownat=260, futimesat=261, newfstatat=262, unlinkat=263, renameat=264, linkat=265,
     symlinkat=266, readlinkat=267, fchmodat=268, faccessat=269, splice=275, tee=276,
     utimensat=280, fallocate=285, preadv=295, pwritev=296, renameat2=316,
-    copy_file_range=326, preadv2=327, pwritev2=328, statx=332, close_range=436, openat2=437,
+    copy_file_range=326, statx=332, close_range=436, openat2=437,
     faccessat2=439, fchmodat2=452,
     # pipes, and waiting for files
     poll=7, pipe=22, select=23, dup=32, dup2=33, epoll_create=213, epoll_wait=232,
@@ -33,7 +35,7 @@ ALLOWED: dict[str, int] = dict(  # noqa: C408 - it reads better so
     timerfd_create=283, eventfd=284, timerfd_settime=286, timerfd_gettime=287,
     signalfd4=289, eventfd2=290, epoll_create1=291, dup3=292, pipe2=293, epoll_pwait2=441,
     # memory
-    mmap=9, mprotect=10, munmap=11, brk=12, mremap=25, msync=26, mincore=27, madvise=28,
+    mmap=9, mprotect=10, munmap=11, brk=12, mremap=25, msync=26, madvise=28,
     mlock=149, munlock=150, mlockall=151, munlockall=152, get_mempolicy=239, membarrier=324,
     mlock2=325,
     # sockets
