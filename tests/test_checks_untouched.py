@@ -1,17 +1,19 @@
-"""A check of an exercise that nobody has answered yet says so, in the notebook and in Validate."""
+"""A check of an exercise that has no answer that runs says so, in the notebook and in Validate."""
 
 import json
-import os
 import subprocess
 import sys
 
 import nbformat
 import pytest
 from answered import ROOT, read, students_environment
-from jupyter_client.manager import start_new_kernel
+from my_robot_basics.checks.clock.tick import PASSED
+from my_robot_basics.feedback.unanswered import say_stopped
+from my_robot_basics.language.speaking import in_language
 from my_robot_basics.validate.lessons.lesson import read_lesson
 from my_robot_basics.validate.verdicts.unanswered import explain_unanswered, is_unanswered
 from my_robot_basics.validate.verdicts.verdict import Verdict
+from opened_lesson import OpenedLesson
 
 from grader.notebook.restore import make_template, restore
 
@@ -22,40 +24,18 @@ SAID = (
 )
 WRONG = 'def is_reachable(x, y, l1, l2):\n    print(x)'
 COMMENTED = '# mine\n'
-
-
-class Notebook:
-    """A lesson in a kernel, opened as JupyterLab opens it."""
-
-    def __init__(self, path):
-        clean = {k: v for k, v in os.environ.items() if not k.startswith(('PYTEST_', 'MY_ROBOT_'))}
-        self.cells = {cell.id: cell.source for cell in nbformat.read(path, as_version=4).cells}
-        self.manager, self.client = start_new_kernel(
-            kernel_name='python3', env=clean | {'JPY_SESSION_NAME': str(path)}
-        )
-
-    def run(self, name, source=None):
-        """Run a cell; return its traceback in one line, or ''."""
-        content = {
-            **{'code': self.cells[name] if source is None else source, 'silent': False},
-            **{'store_history': True, 'user_expressions': {}, 'allow_stdin': False},
-        }
-        message = self.client.session.msg('execute_request', content, metadata={'cellId': name})
-        self.client.shell_channel.send(message)
-        while (reply := self.client.get_shell_msg(timeout=60))['parent_header'].get(
-            'msg_id'
-        ) != message['header']['msg_id']:
-            pass
-        return ' '.join(' '.join(reply['content'].get('traceback', ())).split())
-
-    def close(self):
-        self.client.stop_channels()
-        self.manager.shutdown_kernel(now=True)
+RIGHT = (
+    'def is_reachable(x, y, l1, l2):\n    return abs(l1 - l2) <= (x * x + y * y) ** 0.5 <= l1 + l2'
+)
+STOPPED = (
+    'expected the answer cell `reach` to run to its end, saw {}: '
+    'correct `reach` and run it, then run this cell again'
+)
 
 
 @pytest.fixture(scope='module')
 def notebook():
-    opened = Notebook(ROOT / 'notebooks' / LESSON / f'{LESSON}.ipynb')
+    opened = OpenedLesson(ROOT / 'notebooks' / LESSON / f'{LESSON}.ipynb')
     yield opened
     opened.close()
 
@@ -74,6 +54,47 @@ def test_the_check_of_an_untouched_cell_says_that_there_is_no_answer(notebook):
 def test_once_the_cell_is_changed_its_checks_say_what_is_wrong(notebook, answer):
     said = check_of(notebook, answer if answer == WRONG else answer + notebook.cells['reach'])
     assert 'to return a value, saw None' in said
+
+
+@pytest.mark.parametrize('before', [WRONG, RIGHT], ids=['wrong', 'right'])
+@pytest.mark.parametrize(
+    ('answer', 'saw'),
+    [
+        (RIGHT.replace('):', ')'), "`SyntaxError: expected ':'`"),
+        (
+            'limit = 1.8\n' + RIGHT + '\nis_reachable(1, 1, lenght, 1)',
+            "it raised `NameError: name 'lenght'",
+        ),
+    ],
+    ids=['syntax', 'name'],
+)
+def test_a_check_does_not_judge_what_an_answer_cell_that_stopped_has_left(
+    notebook, before, answer, saw
+):
+    check_of(notebook, before)
+    assert notebook.run('reach', answer) != ''
+    said = notebook.run('reach-visible') or notebook.printed
+    start, _, end = STOPPED.partition('{}')
+    assert said.startswith(start + saw)
+    assert said.endswith(end)
+    assert check_of(notebook, RIGHT) == ''
+    assert notebook.printed == PASSED
+
+
+@pytest.mark.parametrize(
+    ('error', 'shown'),
+    [
+        ("SyntaxError: expected ':'", "`SyntaxError: expected ':'`"),
+        (
+            "NameError: name 'tru' is not defined",
+            "它抛出了 `NameError: name 'tru' is not defined`，请先",
+        ),
+    ],
+)
+def test_a_chinese_notebook_says_it_in_chinese(error, shown):
+    said = in_language('zh_CN', say_stopped('reach', error))
+    assert said.startswith(f'预期：答案单元格 `reach` 运行到结束；实际：{shown}')
+    assert said.endswith('请改正 `reach` 并运行它，然后再运行这个单元格')
 
 
 def test_validate_says_so_in_the_checks_and_names_the_cell():

@@ -25,7 +25,7 @@ class CheckFailed(AssertionError):
     def _render_traceback_(self) -> list[str]:
         # IPython calls this: it shows the sentence alone, never the source of a test.
         untouched = sys.modules.get('my_robot_basics.checks.topics.untouched')
-        said = (untouched.instead() if untouched else '') or str(self)
+        said = (untouched.instead_of_failure() if untouched else '') or str(self)
         return in_lines(in_language_here(said))
 
 

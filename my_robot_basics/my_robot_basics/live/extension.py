@@ -13,7 +13,8 @@ from typing import Any
 
 from my_robot_basics.checks.clock import tick
 from my_robot_basics.checks.topics import untouched
-from my_robot_basics.session import classroom
+from my_robot_basics.live.nodes import not_run
+from my_robot_basics.session import cells_run, classroom
 from my_robot_basics.session.errors import LiveError
 
 _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')
@@ -21,8 +22,9 @@ _NAMES_LIVE = re.compile(r'\bmy_robot_basics\b.*\blive\b')
 
 def load_ipython_extension(shell: Any) -> None:
     """Wait for that cell; from now on, show a tick below checks that pass."""
-    tick.watch()
-    untouched.watch()
+    cells_run.watch()
+    tick.watch(instead=untouched.instead_of_pass)
+    not_run.watch()
 
     def before_cell(info: Any) -> None:
         if _NAMES_LIVE.search(info.raw_cell or ''):

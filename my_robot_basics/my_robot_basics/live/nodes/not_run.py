@@ -1,0 +1,62 @@
+"""Say below a NameError which cell of the lesson has to run first.
+
+After a restart of the kernel, students go on where they were: then a name that the lesson defines
+further up is missing, and Python's message does not tell that. Imports nothing that is slow.
+"""
+
+from typing import Any
+
+from my_robot_basics.session import cells_run, kernel
+
+
+def watch() -> None:
+    """From now on, look after each cell of a student's own notebook; again, it does nothing."""
+    kernel.call_after_cells(_after_cell)
+
+
+def _after_cell(result: Any) -> None:
+    error = result.error_in_exec
+    name = error.name if isinstance(error, NameError) else ''
+    number = _cell_not_run(name) if name else 0
+    if number:
+        from my_robot_basics.session.errors import tell
+
+        tell(
+            f'`{name}` comes from cell {number} of this lesson, which has not run since the '
+            'kernel started: run that cell first, or choose Run → Run All Above Selected Cell; '
+            'then run this one again',
+            in_one=False,
+        )
+
+
+def _cell_not_run(name: str) -> int:
+    """Return the number of the last cell above this one that defines a name and has not run.
+
+    0 if there is none. Cells are counted as in JupyterLab's status bar: from 1, texts too.
+    """
+    found = 0
+    for number, cell in enumerate(cells_run.lesson().get('cells', ()), start=1):
+        if cell.get('id') == cells_run.current():
+            return found
+        if (
+            cell.get('cell_type') == 'code'
+            and not cells_run.text_of(cell.get('id', ''))
+            and name in _defined(''.join(cell.get('source', '')))
+        ):
+            found = number
+    return 0
+
+
+def _defined(source: str) -> set[str]:
+    """Return the names that a cell defines or imports; none if Python cannot parse it."""
+    import symtable
+
+    try:
+        table = symtable.symtable(kernel.shell().transform_cell(source), 'cell', 'exec')
+    except (SyntaxError, ValueError):
+        return set()
+    return {
+        symbol.get_name()
+        for symbol in table.get_symbols()
+        if symbol.is_assigned() or symbol.is_imported()
+    }

@@ -1,0 +1,41 @@
+"""A NameError says which cell of the lesson has to run first."""
+
+import pytest
+from answered import ROOT
+from opened_lesson import OpenedLesson
+
+SAID = (
+    '`{}` comes from cell {} of this lesson, which has not run since the kernel started: run that '
+    'cell first, or choose Run → Run All Above Selected Cell; then run this one again'
+)
+
+
+@pytest.fixture
+def lesson():
+    opened = OpenedLesson(ROOT / 'notebooks/01_topics/01_topics.ipynb')
+    yield opened
+    opened.close()
+
+
+def number(lesson, cell_id):
+    return 1 + [*lesson.cells].index(cell_id)
+
+
+def test_a_name_of_a_cell_above_that_has_not_run_is_explained(lesson):
+    for missing, cell_id in {'stop': 'imports', 'Station': 'station', 'Radio': 'radio'}.items():
+        assert f"name '{missing}' is not defined" in lesson.run('late')
+        assert lesson.printed.endswith(SAID.format(missing, number(lesson, cell_id)))
+        assert lesson.run(cell_id) == ''
+    assert lesson.run('late') == ''
+    assert SAID.partition('comes')[2][:30] not in lesson.printed
+
+
+def test_any_other_missing_name_is_not(lesson):
+    assert lesson.run('imports') == ''
+    for name, source in {
+        'late': 'sation',  # in no cell
+        'station': 'Radio',  # in a cell below
+        'graph': 'stop\ndel stop\nstop',  # its cell has run
+    }.items():
+        assert 'is not defined' in lesson.run(name, source)
+        assert lesson.printed == ''
