@@ -85,6 +85,16 @@ def scrolls_sideways(page):
     )
 
 
+def broken_code(page):
+    """The answers with a line that is shown as several: its indentation seems to be another."""
+    return page.evaluate(
+        """Array.from(document.querySelectorAll('section > pre code')).filter(each => {
+            const lines = Array.from(each.getClientRects()).map(line => Math.round(line.top));
+            return new Set(lines).size > each.textContent.split('\\n').length;
+        }).map(each => each.textContent)"""
+    )
+
+
 @pytest.mark.slow
 def test_axe_finds_an_image_without_alternative_text(page):
     # or the tests below would find nothing in anything
@@ -112,6 +122,7 @@ def test_feedback_and_the_report_of_a_run_are_accessible(page, dark_phone, tmp_p
     assert serious(dark_phone, html) == []
     assert cut_off(dark_phone) == []
     assert scrolls_sideways(dark_phone) == []
+    assert broken_code(dark_phone) == []
     background = "getComputedStyle(document.querySelector('section')).backgroundColor"
     assert dark_phone.evaluate(background) != page.evaluate(background)
     report = write_report(course, Run(datetime.now().astimezone()), list(rows.values()))

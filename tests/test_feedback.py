@@ -235,6 +235,19 @@ def test_a_written_answer_waits_for_the_instructor_and_is_not_scored_zero(course
     assert 'Your instructor will read this.' in html
 
 
+def test_only_what_a_person_wrote_is_shown_as_a_comment(course):
+    html = feedback(course, 'cyn', course.release(TOY))
+    assert 'There is no answer' in html
+    assert 'Comment:' not in html
+    with open_database(course.db_url) as book:
+        for name in ('double', 'explain'):
+            book.find_comment(name, TOY, TOY, 'cyn').manual_comment = f'see {name}'
+        book.db.commit()
+    write_feedback(course)
+    html = (course.folder('feedback', 'cyn', TOY) / f'{TOY}.html').read_text()
+    assert re.findall('Comment:</strong> (.*?)</p>', html) == ['see double', 'see explain']
+
+
 def test_writing_feedback_again_changes_no_page(course):
     feedback(course, 'ada', answered(course, RIGHT))
     said = []

@@ -52,6 +52,13 @@ class GatherVerdicts(GetGrades):
                     output.traceback = [output.evalue]
         return cell, resources
 
+    def _get_comment(self, cell: NotebookNode, resources: dict) -> None:
+        """Add what a person wrote; nbgrader's own comment says, in English, what a reason says."""
+        found = self.gradebook.find_comment(
+            grade_id(cell), self.notebook_id, self.assignment_id, self.student_id
+        )
+        cell.metadata.nbgrader['comment'] = found.manual_comment
+
     def _get_score(self, cell: NotebookNode, resources: dict) -> None:
         super()._get_score(cell, resources)
         grade = self.gradebook.find_grade(
