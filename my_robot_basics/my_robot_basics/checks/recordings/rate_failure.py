@@ -43,8 +43,9 @@ def _explanation(recording: RecordedMessages, hz: float) -> tuple[str, str, str]
         # this comes before pauses: a node may pause because it is busy with so many messages
         seen, cause = _hz_over(recording, recording.rate_hz), 'far too many messages'
         hint = (
-            'the timer period is 0, or nearly (period = 1 / rate, and 1 // rate is 0), or each'
-            ' call of the timer makes another timer: make one, in __init__'
+            'the timer period is 0, or nearly (period = 1 / rate, and 1 // rate is 0), or a'
+            ' callback publishes in a loop, or each call of the timer makes another timer: make'
+            ' one, in __init__, and publish once in each of its calls'
         )
         return seen, cause, hint
     if _has_extra(recording, hz):
