@@ -143,6 +143,19 @@ def test_run_all_runs_an_unanswered_lesson_to_its_end(opened, name):
 
 
 @pytest.mark.slow
+def test_validate_stays_in_sight_in_a_narrow_window(opened, page):
+    opened('02_joint_state')
+    toolbar, before = page.locator('.jp-NotebookPanel-toolbar'), page.viewport_size
+    expect(toolbar.locator('[data-jp-item-name="kernelName"]')).to_be_visible()
+    page.set_viewport_size({'width': 800, 'height': 900})
+    try:
+        expect(toolbar.locator('[data-jp-item-name="kernelName"]')).to_have_count(0)
+        expect(toolbar.get_by_role('button', name='Validate')).to_be_visible()
+    finally:
+        page.set_viewport_size(before)
+
+
+@pytest.mark.slow
 def test_the_live_arm_moves(opened):
     see_the_arm_move(opened('03_publisher'))
 

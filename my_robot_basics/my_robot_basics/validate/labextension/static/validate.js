@@ -202,7 +202,9 @@ needs no build. What it shows is text; nothing in a report is read as HTML. */
             tooltip: say(words, 'Run the visible checks of this lesson'),
             onClick: () => void validate(panel, button, words, parts)
           });
-          panel.toolbar.insertBefore('spacer', 'validate', button);
+          // a narrow window hides the items at the right in a menu, behind three dots
+          const isBefore = panel.toolbar.insertBefore('cellType', 'validate', button);
+          if (!isBefore) panel.toolbar.insertBefore('spacer', 'validate', button);
         });
       }
     };
