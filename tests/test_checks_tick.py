@@ -55,6 +55,15 @@ def test_the_first_check_of_a_kernel_prints_once_that_it_passed():
         manager.shutdown_kernel(now=True)
 
 
+def test_it_is_printed_in_the_notebooks_language():
+    manager, client = kernel_in(JPY_SESSION_NAME='/course/zh_CN/lesson.ipynb')
+    try:
+        assert printed(client, RIGHT) == '✓ 这个单元格里的检查全部通过。\n'
+    finally:
+        client.stop_channels()
+        manager.shutdown_kernel(now=True)
+
+
 def test_a_passing_check_prints_nothing_in_the_test_room():
     manager, client = kernel_in(MY_ROBOT_BASICS_ROOM='test')
     try:
