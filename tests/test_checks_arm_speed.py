@@ -2,6 +2,7 @@
 
 import contextlib
 import itertools
+import math
 import random
 from types import SimpleNamespace
 
@@ -110,6 +111,13 @@ def test_a_short_move_off_by_more_than_two_percent_fails_by_its_feedback(off):
     told = reports(0.5 * (1.0 + off), seconds=2.4)
     with pytest.raises(CheckFailed, match=r'expected 2.40 s .* saw 2.[34]\d s: in each step'):
         judge(2.4 / (1.0 + off), speed=0.5, reported=told)
+
+
+def test_a_move_in_time_that_is_slow_at_both_ends_is_told_its_speed_and_no_other_time():
+    times = [0.05 * step for step in range(1200)]
+    told = [(at, 0.6 * (1.0 - math.cos(math.pi * at / 60.0))) for at in times]
+    with pytest.raises(CheckFailed, match=r'expected 60\.0 s .* saw 0\.02\d+ rad/s for the most'):
+        judge(60.0, reported=told)
 
 
 @pytest.mark.parametrize('is_right', [True, False])

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 from builtin_interfaces.msg import Time
-from my_robot_basics.checks.arm.arm_refusals import _came_after
+from my_robot_basics.checks.arm.second_goals import _came_after
 
 SECOND_NS = 10**9
 

@@ -54,9 +54,13 @@ def wait_for_end(arm: WatchedArm, sent: SentGoal, position: Pose, *, seconds: fl
 
 
 def _keeps_pace(arm: WatchedArm, time: DrivenTime, sent: SentGoal, position: Pose) -> bool:
-    """Whether the feedback after one coarse step has advanced as far as the clock."""
+    """Whether the feedback has advanced as far as the clock, also in one coarse step.
+
+    A loop that adds up steps of three times its sleep is ahead of the clock in fine steps, and
+    nearly keeps pace with coarse ones, which it would seem to need for its way.
+    """
     before = _last_report(arm, sent, position)
-    if before is None:
+    if before is None or _ahead_sec(arm, sent, before) > BEHIND_SEC:
         return False
     fine_ns, time.step_ns = time.step_ns, COARSE_NS
     time.wait(sent.is_over, seconds=COARSE_NS / 1e9)
@@ -70,6 +74,12 @@ def _keeps_pace(arm: WatchedArm, time: DrivenTime, sent: SentGoal, position: Pos
     if behind_sec > BEHIND_SEC:
         arm.lost_sec = min(behind_sec, COARSE_NS / 1e9)
     return abs(behind_sec) <= BEHIND_SEC
+
+
+def _ahead_sec(arm: WatchedArm, sent: SentGoal, report: tuple[float, float]) -> float:
+    """How far a report is ahead of the time since its goal was sent, in s."""
+    at_sec, gone_rad = report
+    return gone_rad / sent.goal.speed - (at_sec - arm.time.at_ns(sent.sent_ns) / 1e9)
 
 
 def _last_report(arm: WatchedArm, sent: SentGoal, position: Pose) -> tuple[float, float] | None:

@@ -9,10 +9,10 @@ from my_robot_basics.checks.arm.arm_moves import expect_reaches, expect_serves_o
 from my_robot_basics.checks.arm.arm_refusals import (
     LIMITS_RAD,
     expect_accepts,
-    expect_one_at_a_time,
     expect_rejects,
 )
 from my_robot_basics.checks.arm.arm_reports import expect_feedback
+from my_robot_basics.checks.arm.second_goals import expect_one_at_a_time
 from my_robot_basics.checks.arm.watched_arm import goal
 
 __all__ = [
