@@ -5,8 +5,8 @@ import time
 
 import pytest
 import rclpy
-from goal_clients import WORDS, MoveArmClient, check_cancels, check_outcomes
-from my_robot_basics.checks import CheckFailed
+from goal_clients import ENDS, WORDS, MoveArmClient, check_cancels, check_outcomes
+from my_robot_basics.checks import CheckFailed, action_server, replies
 from my_robot_basics.checks.actions import served_action
 from nodes.running import STOPS
 from rclpy.action import ActionClient
@@ -237,12 +237,47 @@ def test_a_wrong_outcome_fails_with_its_cause(run, node_class, message):
         check_outcomes()
 
 
+class OnlyNewWords(MoveArmClient):
+    last = ''
+
+    def tell(self, word):
+        if word != self.last:
+            super().tell(word)
+        self.last = word
+
+
+@pytest.mark.usefixtures('impatient')
+def test_a_client_that_does_not_repeat_an_outcome_is_told_so(run):
+    run(OnlyNewWords)
+    with action_server('/move_arm', MoveArm, **ENDS) as server:
+        replies.expect_outcomes(server, succeeded=(1.2, -0.6))
+        with pytest.raises(CheckFailed, match=r'saw none.* also if it equals the last one'):
+            replies.expect_outcomes(server, succeeded=(1.2, -0.6))
+
+
 # --- wrong at obstacles --------------------------------------------------------------------------
 
 
 class CancelsForFalse(MoveArmClient):
     def obstacle(self, message):
         message.data = True
+        super().obstacle(message)
+
+
+class CancelsForFalseAlone(MoveArmClient):
+    def obstacle(self, message):
+        message.data = not message.data
+        super().obstacle(message)
+
+
+class CancelsForNewObstacles(MoveArmClient):
+    """Ignores True if the message before it was True, too."""
+
+    is_there = False
+
+    def obstacle(self, message):
+        is_new, self.is_there = message.data and not self.is_there, message.data
+        message.data = is_new
         super().obstacle(message)
 
 
@@ -323,6 +358,8 @@ WRONG_CANCELS = [
         CancelsForFalse,
         'no request to cancel the goal for False .*: look at message.data: only Tru',
     ),
+    (CancelsForFalseAlone, 'a request to cancel .*saw none.*: look at message.data: only True'),
+    (CancelsForNewObstacles, 'a request to cancel .*saw none.*: each True cancels the goal that'),
     (CancelsByTheClock, 'no request to cancel .*, saw one'),
     (
         RemembersTheObstacle,

@@ -32,6 +32,10 @@ class ClientNodes:
             self.publishers[topic_name] = Topic(topic_name).meet(self._watcher, type(message))
         self.publishers[topic_name].publish(message)
 
+    def told(self) -> str:
+        """The last outcome so far, or ''."""
+        return next((message.data for message in reversed(self._outcomes.messages())), '')
+
     def answering(self, *, may_sleep: bool = True) -> set[str]:
         """Full names of the nodes whose parameter services have always answered, also now.
 

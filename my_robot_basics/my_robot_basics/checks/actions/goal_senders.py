@@ -17,6 +17,14 @@ WAITS = (
     'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_async and '
     'get_result_async, each with add_done_callback'
 )
+IS_TRUE = 'look at message.data: only True asks to cancel'
+EACH_TRUE = (
+    'each True cancels the goal that moves the arm then, also if the message before it was True: '
+    'wait for no False in between'
+)
+CANCEL_SEC = 0.5
+"""How long a request to cancel may take that tells why there was none before, in s of free
+time."""
 MEET_SEC, MET_SEC = 2.0, 0.2
 """How long to wait for a client, and then for it to discover the server, in s of wall time."""
 
@@ -124,8 +132,21 @@ def why_silent(
     return hint if is_free else WAITS
 
 
-def how_to_cancel(goal: ReceivedGoal, goals: Collection[ReceivedGoal]) -> str:
-    """Advice if a goal is not cancelled; `goals` are all that came."""
+def how_to_cancel(
+    watcher: Watcher,
+    goal: ReceivedGoal,
+    goals: Collection[ReceivedGoal],
+    *,
+    say: Callable[[bool], None],
+) -> str:
+    """Advice if a goal is not cancelled; `goals` are all that came.
+
+    `say` publishes whether there is an obstacle, to see what the client cancels the goal for.
+    """
+    for is_there, hint in (False, IS_TRUE), (True, EACH_TRUE):
+        say(is_there)
+        if watcher.spin_until_free(lambda: bool(goal.cancels), free_sec=CANCEL_SEC):
+            return hint
     if any(not each.is_accepted and each.received_ns > goal.received_ns for each in goals):
         return (
             'a rejected goal came in between, so keep the goal handle that was accepted, and call '

@@ -104,10 +104,11 @@ class ServedAction(ScriptedActionServer):
             # the message may have arrived before the client knew that its goal was accepted
             self.client.publish(self.cancelled_on, Bool(data=True))
         goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
+        how = goal_senders.how_to_cancel(self.watcher, goal, self.goals, say=self.say_obstacle)
         fail(
             expected=f'a request to cancel the goal for True on {self.cancelled_on}',
             seen=f'none in {REPLY_SEC:g} s',
-            hint=self._why_silent(goal_senders.how_to_cancel(goal, self.goals)),
+            hint=self._why_silent(how),
             cause='the goal is not cancelled',
         )
 

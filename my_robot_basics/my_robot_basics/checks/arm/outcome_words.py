@@ -1,6 +1,9 @@
 """Why a client of an action publishes another word than that for the status of its goal."""
 
 _RESULT = 'publish the outcome when the result is there: future.result().status tells how it ended'
+_AGAIN = (
+    'publish the outcome of each goal when its result is there, also if it equals the last one'
+)
 _WORDS = {
     'cancelled': 'write canceled with one l, as ROS does',
     'succeed': 'write succeeded',
@@ -8,8 +11,13 @@ _WORDS = {
 }
 
 
-def why_another_word(word: str, seen: str) -> str:
-    """Return what to do if `seen` was published in place of `word`; '' stands for nothing."""
+def why_another_word(word: str, seen: str, *, last: str = '') -> str:
+    """Return what to do if `seen` was published in place of `word`; '' stands for nothing.
+
+    `last`: the outcome of the goal before.
+    """
+    if not seen and last == word:
+        return _AGAIN
     if seen.lower() == word:
         return 'write the word in lower case'
     if seen.strip().lower() in _WORDS:

@@ -34,7 +34,7 @@ def choose(numbers: random.Random, count: int) -> list[tuple[float, float]]:
     """Choose `count` positions that differ clearly from each other."""
     chosen: list[tuple[float, float]] = []
     while len(chosen) < count:
-        pose = round(numbers.uniform(-1.4, 1.4), 3), round(numbers.uniform(-2.0, 2.0), 3)
+        pose = round(numbers.uniform(-1.4, 1.4), 5), round(numbers.uniform(-2.0, 2.0), 5)
         if all(abs(pose[0] - other[0]) > 0.05 for other in chosen):
             chosen.append(pose)
     return chosen
@@ -173,7 +173,7 @@ def _expect_cancel_of(server: ServedAction, goal: ReceivedGoal) -> None:
 
 
 def _expect(server: ServedAction, word: str) -> None:
-    server.expect_outcome(word, hint=partial(why_another_word, word))
+    server.expect_outcome(word, hint=partial(why_another_word, word, last=server.client.told()))
 
 
 def _pose(position: Pose) -> JointState:
