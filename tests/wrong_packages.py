@@ -177,6 +177,12 @@ WRONG = (
         {'arm_player_plays': 'publish one report'},
     ),
     Change(
+        'leaves_out_the_last',
+        swap(PLAYER, ('numbers[::2], numbers[1::2]', 'numbers[:-2:2], numbers[1:-2:2]')),
+        (1, 0, 0),
+        dict.fromkeys(('package_runs', 'arm_player_plays'), 'go on until the last target'),
+    ),
+    Change(
         'visits_each_point_once',
         swap(
             PLAYER,

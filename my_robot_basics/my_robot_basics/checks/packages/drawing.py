@@ -137,14 +137,14 @@ class Drawing:
                 cause=f'{SOLVE_IK} is asked for something else',
             )
         if not servers.was_asked(number):
-            goes_on = self._report.is_there() or len(servers.goals) > self._goals
-            if servers.times_before(number) and goes_on:
+            has_told = self._report.is_there()
+            if servers.times_before(number) and (has_told or len(servers.goals) > self._goals):
                 self._fail_not_again(wanted)
             before = self._targets[number - 1][0] if number else ''
-            skipped = servers.was_skipped(number)
-            hint = drawing_hints.why_not_asked(self._watcher, before, was_skipped=skipped)
-            cause = 'a target is skipped' if skipped else drawing_hints.stops(before)
-            self._meeting.fail_silent(expected=wanted, hint=hint, cause=cause)
+            is_left_out = has_told and number + 1 == len(self._targets)
+            how = {'was_skipped': servers.was_skipped(number), 'is_left_out': is_left_out}
+            why = drawing_hints.why_not_asked(self._watcher, before, **how)
+            self._meeting.fail_silent(expected=wanted, **why)
 
     def _expect_goal(self, number: int) -> ReceivedGoal:
         goals, place = self._servers.goals, self._goals

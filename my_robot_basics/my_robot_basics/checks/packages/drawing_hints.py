@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from my_robot_basics.checks.actions.goal_senders import WAITS
 from my_robot_basics.checks.packages.player_servers import (
@@ -25,6 +26,11 @@ _AFTER = {
     'aborted': 'a goal that was aborted has a result, too: note its status and go on',
 }
 
+_SKIPPED = 'visit those of the parameter targets, in their order, and leave none out'
+_LEFT_OUT = (
+    'the report came before this target was visited: go on until the last target of the '
+    'parameter, whatever becomes of the others'
+)
 _NONE_THERE = 'send no goal if response.reachable is False: it has no angles'
 
 
@@ -33,14 +39,23 @@ def why_no_client(watcher: Watcher) -> str:
     return services.take_graph(watcher.node).why_none(SOLVE_IK, maker='create_client')
 
 
-def why_not_asked(watcher: Watcher, word_before: str, *, was_skipped: bool) -> str:
-    """Why no request comes for a target.
+def why_not_asked(
+    watcher: Watcher, word_before: str, *, was_skipped: bool, is_left_out: bool
+) -> dict[str, Any]:
+    """Why no request comes for a target, as `hint`, and in a few words as `cause`.
 
     `word_before`: how the target before it ended, '' for the first one; `was_skipped`: whether a
-    request for a later target came.
+    request for a later target came; `is_left_out`: it is the last one, and the report came.
     """
-    if was_skipped:
-        return 'visit those of the parameter targets, in their order, and leave none out'
+    if was_skipped or is_left_out:
+        return {'hint': _LEFT_OUT if is_left_out else _SKIPPED, 'cause': 'a target is skipped'}
+    cause = f'{SOLVE_IK} is not asked'
+    if word_before:
+        cause = f'{NODE} stops after a target that is {word_before}'
+    return {'hint': _why_silent(watcher, word_before), 'cause': cause}
+
+
+def _why_silent(watcher: Watcher, word_before: str) -> str:
     if not answers_parameters(watcher, NODE):
         return waits_for_answer(SOLVE_IK) if word_before else _NO_SPIN
     if word_before in _AFTER:
@@ -50,15 +65,6 @@ def why_not_asked(watcher: Watcher, word_before: str, *, was_skipped: bool) -> s
     return (
         'wait until there is a server (wait_for_service), then call call_async for each target; '
         'read the parameter targets with get_parameter'
-    )
-
-
-def stops(word_before: str) -> str:
-    """The cause, in a few words, if no request comes after a target that ended like this."""
-    return (
-        f'{NODE} stops after a target that is {word_before}'
-        if word_before
-        else (f'{SOLVE_IK} is not asked')
     )
 
 
