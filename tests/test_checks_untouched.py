@@ -81,6 +81,24 @@ def test_a_check_does_not_judge_what_an_answer_cell_that_stopped_has_left(
     assert notebook.printed == PASSED
 
 
+def test_a_check_in_an_unknown_notebook_judges_although_the_cell_before_it_raised():
+    """Only JupyterLab tells a kernel its notebook and the ids of cells."""
+    program = (
+        'from IPython.core.interactiveshell import InteractiveShell\n'
+        'from my_robot_basics.checks import fail\n'
+        'from my_robot_basics.live.extension import load_ipython_extension\n'
+        'shell = InteractiveShell.instance()\n'
+        'shell.kernel = None\n'
+        "shell.user_ns['fail'] = fail\n"
+        'load_ipython_extension(shell)\n'
+        "for seen in 'one', 'two':\n"
+        "    shell.run_cell(f'fail(expected=str(), seen={seen!r}, hint=str())')\n"
+    )
+    run = [sys.executable, '-P', '-c', program]
+    told = subprocess.run(run, env=students_environment(), capture_output=True, text=True)
+    assert [told.stdout.count(f'saw {seen}') for seen in ('one', 'two')] == [1, 1], told
+
+
 @pytest.mark.parametrize(
     ('error', 'shown'),
     [

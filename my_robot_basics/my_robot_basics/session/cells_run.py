@@ -35,7 +35,7 @@ def text_of(cell_id: str) -> str:
 
 def error_of(cell_id: str) -> str:
     """Return the type and message of the exception that ended a cell's last run, or ''."""
-    return _errors.get(cell_id, '')
+    return _errors.get(cell_id, '') if cell_id else ''
 
 
 def lesson() -> dict[str, Any]:

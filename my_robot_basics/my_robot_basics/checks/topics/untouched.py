@@ -18,12 +18,12 @@ def instead_of_failure() -> str:
 def instead_of_pass() -> str:
     """Return what is said below the check that has just passed, instead of that, or ''."""
     marks = _answer_of_this_check(cells_run.lesson())
-    error = cells_run.error_of(marks.get('cell_id', ''))
+    error = cells_run.error_of(marks['cell_id']) if marks else ''
     if not error:
         return ''
     from my_robot_basics.feedback.unanswered import say_stopped
 
-    return say_stopped(marks.get('grade_id', ''), error)
+    return say_stopped(marks['grade_id'], error)
 
 
 def _no_answer() -> str:
