@@ -141,6 +141,34 @@ def test_the_server_of_a_room_has_no_descriptor_of_the_relay():
     process.wait(30)
 
 
+TAKE_FROM_PROCESS_1 = """
+import ctypes, os
+libc = ctypes.CDLL(None, use_errno=True)
+process = os.pidfd_open(os.getppid())
+taken = [libc.syscall(438, process, number, 0) for number in range(3, 20)]  # pidfd_getfd
+print(max(taken), os.strerror(ctypes.get_errno()))
+"""
+
+
+@pytest.mark.starts
+@pytest.mark.isolation
+def test_code_in_a_room_cannot_take_the_socket_of_the_network_outside():
+    """As root we may trace anything; students may not, whether Yama forbids it or not."""
+    listening = socket.create_server(('127.0.0.1', 0))
+    unprivileged = ['bwrap', '--unshare-user', '--uid', '1000', '--cap-drop', 'ALL']
+    python = [sys._base_executable, '-IS']
+    room = [*python, DEPLOY / 'room.py', str(listening.fileno()), '1']
+    with listening:
+        done = subprocess.run(
+            [*unprivileged, '--dev-bind', '/', '/', *room, *python, '-c', TAKE_FROM_PROCESS_1],
+            pass_fds=[listening.fileno()],
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=60,
+        )
+    assert done.stdout == '-1 Operation not permitted\n'
+
+
 def test_memory_limits_the_number_of_servers_and_a_lack_is_reported(tmp_path):
     meminfo = tmp_path / 'meminfo'
     meminfo.write_text('MemTotal:       16384000 kB\nMemFree:        1 kB\n')

@@ -5,6 +5,7 @@ opened outside: connections to it are relayed to 127.0.0.1:PORT in the room, whe
 """
 
 import asyncio
+import ctypes
 import os
 import signal
 import socket
@@ -14,6 +15,17 @@ import sys
 CHUNK_BYTES = 65_536
 STOP_GRACE_SEC = 10.0
 """How long a server that was told to end may take to end its kernels."""
+_PR_SET_DUMPABLE = 4
+
+
+def refuse_tracing() -> None:
+    """Keep other processes of the room, which have the same user, from taking a descriptor here.
+
+    The listening socket belongs to the network outside: code that has it can disconnect it, and
+    connect it to anything there. Raises RuntimeError.
+    """
+    if ctypes.CDLL(None).prctl(_PR_SET_DUMPABLE, 0, 0, 0, 0) != 0:
+        raise RuntimeError('process 1 of a room could not be made one that no other may trace')
 
 
 async def copy_stream(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -65,6 +77,7 @@ async def run(descriptor: int, port: int, command: list[str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, told.set)
     # only process 1 keeps the listening socket: student code does not need it
+    refuse_tracing()
     os.set_inheritable(descriptor, False)
     server = subprocess.Popen(command, start_new_session=True)
 
