@@ -242,28 +242,66 @@ def test_server_and_hub_pin_one_jupyterhub_and_no_pin_of_the_course_is_repeated(
     assert not any('resolved' in each for each in locked.values())
 
 
+needs_root = pytest.mark.skipif(os.geteuid() != 0, reason='install runs as root')
+
+
+@pytest.fixture
+def install(tmp_path):
+    """A function that runs `install` with these settings and this exit code of `runuser`."""
+
+    def installed(bubblewraps, **settings):
+        hub, checkout, commands = (tmp_path / name for name in ('hub', 'checkout', 'bin'))
+        for folder in (hub, checkout, commands):
+            folder.mkdir()
+        for command in (checkout / 'course', commands / 'runuser'):  # with which it tries bwrap
+            command.write_text(f'#!/bin/sh\nexit {bubblewraps}\n')
+            command.chmod(0o755)
+        class_ = (DEPLOY / 'class.toml').read_text()
+        settings |= {'instructor': 'nobody', 'checkout': str(checkout)}
+        for name, value in settings.items():
+            class_ = re.sub(rf'(?m)^{name} = .*$', f'{name} = {json.dumps(value)}', class_)
+        (hub / 'class.toml').write_text(class_)
+        done = subprocess.run(
+            [DEPLOY / 'install', '--no-start', hub],
+            env={'PATH': f'{commands}:{os.environ["PATH"]}', 'PYTHON': sys.executable},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 1
+        assert not (hub / 'venv').exists()
+        return done.stderr
+
+    return installed
+
+
 @pytest.mark.starts
-@pytest.mark.skipif(os.geteuid() != 0, reason='install runs as root')
-def test_install_stops_with_the_remedy_if_no_room_can_be_made_for_an_ordinary_user(tmp_path):
-    hub, checkout, commands = (tmp_path / name for name in ('hub', 'checkout', 'bin'))
-    for folder in (hub, checkout, commands):
-        folder.mkdir()
-    for command in (checkout / 'course', commands / 'runuser'):  # with which it tries bwrap
-        command.write_text('#!/bin/sh\nexit 1\n')
-        command.chmod(0o755)
-    settings = (DEPLOY / 'class.toml').read_text()
-    for name, value in {'instructor': 'nobody', 'checkout': str(checkout)}.items():
-        settings = re.sub(rf'(?m)^{name} = .*$', f'{name} = {json.dumps(value)}', settings)
-    (hub / 'class.toml').write_text(settings)
-    done = subprocess.run(
-        [DEPLOY / 'install', '--no-start', hub],
-        env={'PATH': f'{commands}:{os.environ["PATH"]}', 'PYTHON': sys.executable},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 1
-    assert 'bubblewrap makes no room for an ordinary user. On Ubuntu 24.04, put' in done.stderr
-    assert not (hub / 'venv').exists()
+@needs_root
+def test_install_stops_with_the_remedy_if_no_room_can_be_made_for_an_ordinary_user(install):
+    said = install(1)
+    assert 'bubblewrap makes no room for an ordinary user. On Ubuntu 24.04, put' in said
+
+
+@pytest.mark.starts
+@needs_root
+@pytest.mark.parametrize('linked', [False, True], ids=['a_folder', 'a_link'])
+def test_install_gives_nothing_away_through_a_course_that_a_student_has_made(
+    install, tmp_path, linked
+):
+    """Its links would get the rights and the owner of a course's folders."""
+    exchange, secret = tmp_path / 'exchange', tmp_path / 'secret'
+    exchange.mkdir()
+    secret.mkdir(0o700)
+    course = exchange / 'next'
+    if linked:
+        course.symlink_to(secret)
+    else:
+        course.mkdir()
+        (course / 'inbound').symlink_to(secret)
+    os.chown(course, 12_345, 12_345, follow_symlinks=False)
+    said = install(0, exchange=str(exchange), course='next')
+    assert f'{course} belongs to' in said
+    assert 'expected nobody: a student may have made it. Move it away' in said
+    assert (secret.stat().st_mode & 0o777, secret.stat().st_uid) == (0o700, 0)
 
 
 def test_install_copies_each_file_that_the_configuration_needs():
