@@ -55,6 +55,7 @@ c.Autograde.autograde_preprocessors = list(AUTOGRADE_PASSES)
 c.Autograde.exclude_overwriting = solved_packages
 c.Autograde.pre_convert_hook = 'grader.storage.gradebook.register_before_autograde'
 c.ExchangeFactory.collect = 'grader.collect.nbgrader_collect.CollectAsWeDo'
+c.ExchangeFactory.release_feedback = 'grader.serving.nbgrader_release.ReleaseAsWeDo'
 c.GenerateFeedback.preprocessors = list(FEEDBACK_PASSES)
 c.GenerateFeedback.exporter_class = 'grader.report.feedback.FeedbackPage'
 c.ExportApp.plugin_class = 'grader.export.nbgrader_export.CsvExport'
