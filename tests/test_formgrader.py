@@ -109,6 +109,19 @@ def exported(capsys, course):
 
 
 @pytest.mark.slow
+def test_the_formgrader_runs_nothing_in_a_folder_that_an_address_names(course, lab):
+    """A picture in a collected notebook, ![](/formgrader?path=…), calls such an address."""
+    folder, ran = course.folder('submitted', 'ada', LESSON), course.root / 'ran'
+    (folder / 'nbgrader_config.py').write_text(f'open({str(ran)!r}, "w")')
+    address = f'{lab}/formgrader?token={TOKEN}&path='
+    for path in (folder, folder.relative_to(course.root)):
+        with pytest.raises(urllib.error.HTTPError, match='403'):
+            urllib.request.urlopen(f'{address}{path}')
+    urllib.request.urlopen(f'{address}{course.root}').close()
+    assert not ran.exists()
+
+
+@pytest.mark.slow
 def test_points_and_a_comment_given_in_the_formgrader_stay_when_ada_is_graded_again(
     course, lab, capsys
 ):
