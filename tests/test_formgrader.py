@@ -64,6 +64,7 @@ def lab(course, tmp_path):
     # neither what this user's own JupyterLab remembers, nor what a test session sets
     mine = {f'JUPYTER_{name}_DIR': str(tmp_path / name) for name in ('CONFIG', 'DATA', 'RUNTIME')}
     clean = {k: v for k, v in os.environ.items() if not k.startswith(('PYTEST_', 'COV_'))}
+    clean['PYTHONPATH'] = str(course.root)  # as that of a checkout is in its .venv
     with (tmp_path / 'log').open('w') as log:
         server = subprocess.Popen(
             [
@@ -118,6 +119,21 @@ def test_the_formgrader_runs_nothing_in_a_folder_that_an_address_names(course, l
         with pytest.raises(urllib.error.HTTPError, match='403'):
             urllib.request.urlopen(f'{address}{path}')
     urllib.request.urlopen(f'{address}{course.root}').close()
+    assert not ran.exists()
+
+
+@pytest.mark.slow
+def test_no_export_imports_what_a_notebook_names(course, lab):
+    """A picture in the notebook, ![](/nbconvert/script/…), begins an export, too."""
+    folder, ran = course.folder('submitted', 'ada', LESSON), course.root / 'ran'
+    (folder / 'evil.py').write_text(f'open({str(ran)!r}, "w")')
+    work = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell('1 + 1')])
+    module = '.'.join(folder.relative_to(course.root).parts)
+    work.metadata.language_info = {'name': 'python', 'nbconvert_exporter': f'{module}.evil.X'}
+    nbformat.write(work, folder / f'{LESSON}.ipynb')
+    path = (folder / f'{LESSON}.ipynb').relative_to(course.root)
+    with urllib.request.urlopen(f'{lab}/nbconvert/script/{path}?token={TOKEN}') as reply:
+        assert b'1 + 1' in reply.read()
     assert not ran.exists()
 
 

@@ -19,7 +19,7 @@ from tornado import iostream, web
 
 from my_robot_basics.language.speaking import language_of
 from my_robot_basics.validate import progress_server
-from my_robot_basics.validate.one_course import open_one_course
+from my_robot_basics.validate.harmless_addresses import make_addresses_harmless
 from my_robot_basics.validate.reports.report_words import front_end_texts
 from my_robot_basics.validate.served import path_below
 
@@ -116,7 +116,7 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(server: ServerApp) -> None:
-    open_one_course()
+    make_addresses_harmless()
     handlers = {ADDRESS: ValidateHandler, progress_server.ADDRESS: progress_server.ProgressHandler}
     base = server.web_app.settings['base_url']
     server.web_app.add_handlers('.*$', [(url_path_join(base, a), h) for a, h in handlers.items()])
