@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import urllib.error
+import urllib.parse
 import urllib.request
 from pathlib import Path
 
@@ -135,6 +136,18 @@ def test_no_export_imports_what_a_notebook_names(course, lab):
     with urllib.request.urlopen(f'{lab}/nbconvert/script/{path}?token={TOKEN}') as reply:
         assert b'1 + 1' in reply.read()
     assert not ran.exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('page', ['manage_submissions', 'gradebook', 'manage_students'])
+def test_a_name_in_an_address_of_the_formgrader_is_shown_as_text(lab, page):
+    """A link to such an address would do anything in the name of whoever follows it."""
+    for script in ('</script><script>alert(1)</script>', '";alert(1)//', '\\x3cimg src=x>'):
+        address = f'{lab}/formgrader/{page}/{urllib.parse.quote(script, safe="")}?token={TOKEN}'
+        with urllib.request.urlopen(address) as reply:
+            shown = reply.read().decode()
+        assert 'alert(1)' in shown or 'x3cimg' in shown
+        assert script not in shown
 
 
 @pytest.mark.slow

@@ -2,7 +2,8 @@
 
 A picture in a notebook calls any address of the server as soon as JupyterLab shows it, without a
 cell that is run. Two of them ran Python code that students had handed in beside their notebooks,
-with the rights of whoever opened one. No option prevents that, so these are patches.
+with the rights of whoever opened one; a link to a third ran JavaScript that was written into the
+link. No option prevents that, so these are patches.
 """
 
 import os
@@ -10,6 +11,7 @@ import sys
 from typing import Any
 
 from jupyter_server.nbconvert import handlers as exports
+from markupsafe import escape
 from tornado import web
 
 _FORMGRADER = 'nbgrader.server_extensions.formgrader.handlers'
@@ -20,6 +22,7 @@ def make_addresses_harmless() -> None:
     """Patch the formgrader, if this server has it, and exports."""
     if formgrader := sys.modules.get(_FORMGRADER):
         _open_one_course(formgrader.FormgraderHandler)
+        _show_names_as_text(formgrader.BaseHandler)
     exports.get_exporter = _exporter_of_known_formats
 
 
@@ -39,6 +42,21 @@ def _open_one_course(handler_class: Any) -> None:
         return opened(handler)
 
     handler_class.get = get
+
+
+def _show_names_as_text(handler_class: Any) -> None:
+    """Let the formgrader's pages show names that their addresses have as text.
+
+    nbgrader puts them into HTML, and into texts of scripts, as they are.
+    """
+    rendered = handler_class.render
+
+    def render(handler: Any, page: str, **values: Any) -> str:
+        texts = {name: value for name, value in values.items() if isinstance(value, str)}
+        shown = {name: escape(text).replace('\\', '&#92;') for name, text in texts.items()}
+        return rendered(handler, page, **values | shown)
+
+    handler_class.render = render
 
 
 def _exporter_of_known_formats(format: str, **options: Any) -> Any:
