@@ -280,6 +280,7 @@ def test_the_first_note_reports_a_notebook_without_answer_cells(template, cells)
     assert_whole(restored, template)
     what, _, advice = restored.notes[0].partition(': ')
     assert what == 'the notebook holds none of the answer cells of this assignment'
+    assert 'it is another notebook, they were deleted, or a program' in advice
     assert 'save it in JupyterLab, and submit that file' in advice
 
 

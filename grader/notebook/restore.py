@@ -19,9 +19,10 @@ from my_robot_basics.validate.lessons.cells import (
 from nbformat import NotebookNode
 
 NO_ANSWERS = (
-    'the notebook holds none of the answer cells of this assignment: it is another notebook, or a '
-    "program has removed nbgrader's metadata from its cells. Write your answers into the notebook "
-    'of this lesson that you were given, save it in JupyterLab, and submit that file'
+    'the notebook holds none of the answer cells of this assignment: it is another notebook, they '
+    "were deleted, or a program has removed nbgrader's metadata from them. Write your answers "
+    'into the notebook of this lesson that you were given, save it in JupyterLab, and submit that '
+    'file'
 )
 
 
