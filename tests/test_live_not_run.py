@@ -5,8 +5,9 @@ from answered import ROOT
 from opened_lesson import OpenedLesson
 
 SAID = (
-    '`{}` comes from cell {} of this lesson, which has not run since the kernel started: run that '
-    'cell first, or choose Run → Run All Above Selected Cell; then run this one again'
+    '`{}` comes from cell {} of this lesson, which has not run to its end since the kernel '
+    'started: run that cell first, or choose Run → Run All Above Selected Cell; then run this one '
+    'again'
 )
 
 
@@ -30,6 +31,12 @@ def test_a_name_of_a_cell_above_that_has_not_run_is_explained(lesson):
     assert SAID.partition('comes')[2][:30] not in lesson.printed
 
 
+def test_a_cell_above_that_stopped_is_named_too(lesson):
+    assert 'No module' in lesson.run('imports', f'import nothing_here\n{lesson.cells["imports"]}')
+    assert "name 'stop' is not defined" in lesson.run('station', 'stop')
+    assert lesson.printed == SAID.format('stop', number(lesson, 'imports'))
+
+
 def test_any_other_missing_name_is_not(lesson):
     assert lesson.run('imports') == ''
     for name, source in {
@@ -38,4 +45,4 @@ def test_any_other_missing_name_is_not(lesson):
         'graph': 'stop\ndel stop\nstop',  # its cell has run
     }.items():
         assert 'is not defined' in lesson.run(name, source)
-        assert lesson.printed == ''
+        assert 'comes from cell' not in lesson.printed

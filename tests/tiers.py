@@ -42,7 +42,7 @@ STARTING_FILES = frozenset(
     lesson_own_program lessons_run
     live_answers live_camera live_classroom live_domain live_interrupts
     live_kernel live_kernel_ends
-    live_lessons live_neighbours live_not_run
+    live_error_hints live_lessons live_neighbours live_not_run
     live_qos_pairs live_refusals live_runner live_sliders live_target logs main
     manual_grading nbgrader_commands nbgrader_contract nodes opened_notebooks ordinary_events
     package partial preprocessors readme release replay reuse reuse_ends rooms

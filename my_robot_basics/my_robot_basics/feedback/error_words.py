@@ -171,8 +171,8 @@ BY_WORDS = (
     ),
     Case(
         pattern=r'callback should be either be callable',
-        to_do=', so give it a function that takes one message, by its name and '
-        'without parentheses',
+        to_do=', so give it a function that takes one message, by its name and without '
+        'parentheses; the def of a method begins with self: (self, message)',
     ),
     Case(
         pattern=r'service type provided is not valid',

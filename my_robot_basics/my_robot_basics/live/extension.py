@@ -13,7 +13,7 @@ from typing import Any
 
 from my_robot_basics.checks.clock import tick
 from my_robot_basics.checks.topics import untouched
-from my_robot_basics.live.nodes import not_run
+from my_robot_basics.live.nodes import error_hints, not_run
 from my_robot_basics.session import cells_run, classroom
 from my_robot_basics.session.errors import LiveError
 
@@ -25,6 +25,7 @@ def load_ipython_extension(shell: Any) -> None:
     cells_run.watch()
     tick.watch(instead=untouched.instead_of_pass)
     not_run.watch()
+    error_hints.watch()
 
     def before_cell(info: Any) -> None:
         if _NAMES_LIVE.search(info.raw_cell or ''):
