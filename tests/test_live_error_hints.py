@@ -71,6 +71,16 @@ def test_any_cell_has_the_hint_that_validate_has(lesson, source, hint):
         assert SAID not in lesson.printed
 
 
+def test_the_chinese_edition_has_it_in_chinese():
+    opened = OpenedLesson(ROOT / 'notebooks/zh_CN/08_services/08_services.ipynb')
+    try:
+        assert opened.run('gripper', 'work_sec = 1；')
+        assert opened.printed.startswith('这个单元格抛出了 `SyntaxError: invalid character')
+        assert opened.printed.endswith("请改写成 ';'")
+    finally:
+        opened.close()
+
+
 def test_a_cell_that_has_to_run_first_is_all_that_is_said(lesson):
     assert "name 'Gripper' is not defined" in lesson.run('first_call', 'Gripper')
     assert 'comes from cell' in lesson.printed

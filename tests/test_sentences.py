@@ -116,10 +116,14 @@ def test_a_sentence_is_translated_by_the_templates_that_fit_it(english, chinese)
 @pytest.mark.parametrize(
     'text', ['a, b' * 400, 'x is ' * 300, 'a and ' * 300, '. ' * 900, 'x' * (MOST_CHARACTERS + 1)]
 )
-def test_arbitrary_text_is_translated_in_a_bounded_number_of_tries(text):
-    sentences = Sentences(TEMPLATES)
-    assert isinstance(sentences.translate(text), str)
-    assert sentences._tries < 10_000
+def test_arbitrary_text_is_translated_in_a_bounded_number_of_tries(monkeypatch, text):
+    searches, begin = [], Sentences._search
+    monkeypatch.setattr(
+        Sentences, '_search', lambda self: searches.append(begin(self)) or searches[-1]
+    )
+    assert isinstance(Sentences(TEMPLATES).translate(text), str)
+    assert all(search._tries < 10_000 for search in searches)
+    assert len(searches) == (len(text) <= MOST_CHARACTERS)
 
 
 @pytest.mark.timeout(60)

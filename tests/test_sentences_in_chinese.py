@@ -2,8 +2,10 @@
 
 import pytest
 from chinese_reason import CHINESE_REASON, REASON
+from my_robot_basics.feedback.unanswered import say_stopped
 from my_robot_basics.language import speaking
 from my_robot_basics.language.sentences import REASON as REASON_FORM
+from my_robot_basics.language.sentences import Sentences
 from my_robot_basics.language.speaking import in_language
 
 
@@ -17,6 +19,13 @@ LONG = (
     "`turns_msg`, the line 'int[2] turns': there is no type int: write int32 or another int with "
     "its number of bits; the line 'float[2] gear_ratios [100.0, 50.0]': there is no type float: "
     'write float64, or float32 for half the digits'
+)
+RAISED = (
+    'expected messages on /kinematics/joint_states, saw no message in 2 s: /arm has a publisher '
+    'there and sends nothing, because its callback raised TypeError: Arm.publish() takes 0 '
+    'positional arguments but 1 was given, so write a parameter for each of them into its def, '
+    'such as (self, request, response) for a service, (self, message) for a subscription, and '
+    '(self) for a timer'
 )
 WITH_COLONS = {
     'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw [30.0, -90.0]: these are '
@@ -385,3 +394,47 @@ def test_a_number_of_publishers_or_subscriptions_is_translated_into_chinese():
     assert in_language('zh_CN', 'expected 4 subscriptions, saw 0 (no name): keep both keys') == (
         '预期：4 个订阅；实际：0（没有名字）。两个键都要保留'
     )
+
+
+@pytest.mark.parametrize(
+    ('error', 'chinese'),
+    [
+        (
+            "SyntaxError: invalid character '：' (U+FF1A)",
+            "它抛出了 `SyntaxError: invalid character '：' (U+FF1A)`，请改写成 ':'",
+        ),
+        (
+            'IndentationError: unexpected indent',
+            '它抛出了 `IndentationError: unexpected indent`，请让同一个代码块的每一行都以同样多的'
+            '空格开头',
+        ),
+        ('SyntaxError: invalid syntax', '`SyntaxError: invalid syntax`'),
+    ],
+)
+def test_what_stopped_an_answer_cell_is_told_in_chinese_with_its_hint(error, chinese):
+    assert in_language('zh_CN', say_stopped('motion', error)) == (
+        f'预期：答案单元格 `motion` 运行到结束；实际：{chinese}。请改正 `motion` 并运行它，'
+        '然后再运行这个单元格'
+    )
+
+
+def test_another_thread_that_translates_does_not_prolong_a_search(monkeypatch):
+    """A node's thread may tell an exception many times a second while a check fails."""
+    chinese, put, puts = speaking.sentences('zh_CN'), Sentences._put, []
+    monkeypatch.setattr(Sentences, '_put', lambda *given: puts.append(0) or put(*given))
+    shown = chinese.translate(RAISED)
+    alone = len(puts)
+
+    def disturbed(*given):
+        puts.append(0)
+        assert len(puts) <= 2 * alone
+        if len(puts) % 20 == 0:
+            with monkeypatch.context() as other_thread:
+                other_thread.setattr(Sentences, '_put', put)
+                assert chinese.translate('nobody knows this') == 'nobody knows this'
+        return put(*given)
+
+    puts.clear()
+    monkeypatch.setattr(Sentences, '_put', disturbed)
+    assert chinese.translate(RAISED) == shown
+    assert len(puts) == alone

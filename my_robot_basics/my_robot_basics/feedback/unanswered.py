@@ -20,6 +20,7 @@ def say_stopped(name: str, error: str) -> str:
     """Return the sentence for an answer cell that stopped with an error: 'NameError: …'."""
     raised, why = shorten(error), hint_for_exception(error)
     expected = f'the answer cell `{name}` to run to its end'
-    seen = f'it raised `{raised}`{why}' if why else f'`{raised}`'
+    alone = f'it raised `{raised}`'  # a clause with a place of its own follows no other place
+    seen = alone + why if why else f'`{raised}`'
     hint = f'correct `{name}` and run it, then run this cell again'
     return f'expected {expected}, saw {seen}: {hint}'

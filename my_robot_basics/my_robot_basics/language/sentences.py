@@ -8,6 +8,7 @@ same way. A text that no template fits, such as a name or a student's output, st
 
 import re
 from collections.abc import Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -84,8 +85,7 @@ class Sentences:
         """Return a sentence in this language, or unchanged if nothing fits."""
         if len(text) > MOST_CHARACTERS:
             return text
-        self._found, self._tries = {}, 0
-        shown = self._best(text, 0)[1]
+        shown = self._search()._best(text, 0)[1]
         return text if shown == text else remove_spaces(shown)
 
     def parts(self, english: str, text: str) -> dict[str, str]:
@@ -94,12 +94,11 @@ class Sentences:
         Of several matches, it is the one that leaves the least in English; {} if none fits.
         """
         template = Template.of(english, english)
-        self._found, self._tries = {}, 0
-        least, parts = 0.0, dict[str, str]()
+        search, least, parts = self._search(), 0.0, dict[str, str]()
         for found in islice(template.fits(text[:MOST_CHARACTERS]), MOST_SPLITS):
             if self._is_cut(template, found):
                 continue
-            best = {name: self._best(said, 0) for name, said in found.items()}
+            best = {name: search._best(said, 0) for name, said in found.items()}
             left = sum(each for each, _ in best.values())
             if not parts or left < least:
                 least, parts = (
@@ -107,6 +106,12 @@ class Sentences:
                     {name: remove_spaces(shown) for name, (_, shown) in best.items()},
                 )
         return parts
+
+    def _search(self) -> 'Sentences':
+        """Return a copy with a search of its own: nodes' threads translate at the same time."""
+        search = copy(self)
+        search._found, search._tries = {}, 0
+        return search
 
     def _best(self, text: str, deep: int) -> tuple[float, str]:
         """Return the translation with the fewest letters in English, after that number."""

@@ -27,4 +27,5 @@ def _after_cell(result: Any) -> None:
     said = without_signatures(cells_run.error_of(cells_run.current()))
     if why := hint_for_exception(said):
         raised = shorten(said)
-        tell(f'this cell raised `{raised}`{why}', in_one=False)
+        told = f'this cell raised `{raised}`'
+        tell(told + why, in_one=False)
