@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Self
 
 from my_robot_basics.checks.nodes.node_log import NodeLog
+from my_robot_basics.checks.nodes.repeated_answers import RepeatedAnswers
 from my_robot_basics.checks.values import angles, answers, pairing
 from my_robot_basics.checks.values.angles import HOW, IN_REACH
 from my_robot_basics.feedback.errors import fail
@@ -39,6 +40,7 @@ class Log(NodeLog):
         """Use `with rosout(node_name) as log`; the `with` statement subscribes to /rosout."""
         super().__init__(node_name)
         self._forms = answers.Forms()
+        self._repeated = RepeatedAnswers()
         self._answer: list[float] = []
         """The angles of the last target in reach."""
 
@@ -51,7 +53,7 @@ class Log(NodeLog):
     ) -> bool:
         """Expect both angles of each solution in INFO records; in pairs, each θ1 with its own θ2.
 
-        All else is as in `expect_angles`.
+        Those of all earlier targets must not come again. All else is as in `expect_angles`.
         """
         angles_deg = [angle for pair in solutions for angle in pair]
         had_warning = self.expect_angles(angles_deg, target=target, may_lag=may_lag)
@@ -62,6 +64,7 @@ class Log(NodeLog):
                 hint='θ1 is paired with the θ2 of the other branch: both signs of θ2 are right, so'
                 ' check the sign of θ2 in the formula for θ1',
             )
+        self._repeated.expect_none(angles_deg, self)
         return had_warning
 
     def expect_angles(
