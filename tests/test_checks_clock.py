@@ -132,6 +132,31 @@ def test_a_timer_due_when_the_simulated_clock_ends_fires_on_wall_time():
         assert fired.wait(10.0)
 
 
+def test_timers_that_take_turns_still_do_so_after_a_check():
+    # on a clock that goes back, rcl starts all timers anew, and both would fire at once
+    fired = []
+
+    def make_node(context):
+        node = Node('by_turns', context=context)
+        node.create_timer(0.4, lambda: fired.append('even'))
+        time.sleep(0.2)
+        node.create_timer(0.4, lambda: fired.append('odd'))
+        return node
+
+    with spinning(make_node), Watcher() as watcher:
+        with clock.SimulatedClock(watcher, needed={'/by_turns'}) as simulated:
+            simulated.tick(10**9)
+        with clock.SimulatedClock(watcher, needed={'/by_turns'}) as simulated:
+            simulated.tick(10**9)
+            in_ticks = []
+            for _ in range(12):
+                fired.clear()
+                simulated.tick(10**8)
+                in_ticks.append(len(fired))
+    assert max(in_ticks) == 1
+    assert sum(in_ticks) == 6
+
+
 def test_a_clock_publisher_that_only_the_notebook_knows_prevents_simulation(monkeypatch):
     monkeypatch.setattr(student, 'publishes', lambda topic_name: topic_name == '/clock')
     with Watcher() as watcher, pytest.raises(clock.Inconclusive, match='another node publishes'):

@@ -181,11 +181,11 @@ class SimulatedClock:
 
     def _restore(self) -> None:
         global _latest_ns
-        _latest_ns = max(_latest_ns, self.now_ns)
         former, self._former = self._former, {}
-        # back to wall time first: rcl does not change the next call of a timer that is due at this
-        # very moment, so that a call ahead of wall time would come only at that time
-        self.now_ns = time.time_ns()
+        # rcl does not change the next call of a timer that is due at this very moment, so that it
+        # would come only at that time; on a clock that goes back, all timers would start together
+        self.now_ns = 1 + (self.now_ns or time.time_ns())
+        _latest_ns = max(_latest_ns, self.now_ns)
         self._publish()
         asked = _all_done(self._barriers.ask(former).values())
         self._watcher.spin_until(asked, timeout_sec=SLOWEST_BARRIER_SEC)
