@@ -50,6 +50,15 @@ def test_run_answer_reports_a_node_that_the_answer_made_and_nothing_spins(lesson
     lesson.run('reset()')
 
 
+def test_the_traceback_of_an_answer_that_raises_shows_its_own_lines_and_none_of_the_course(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run('class Answer(Node):\n    def __init__(self):\n        self.text = [][1]')
+    error = lesson.run("run_answer('Answer')").error
+    assert 'self.text = [][1]' in error
+    assert 'exercise.py' not in error
+    lesson.run('reset()')
+
+
 CHECK = '"""Two and two are four"""\nfrom my_robot_basics.checks import expect\n'
 
 

@@ -44,6 +44,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     taken from the course's own nodes, if the answer has started the program of one of these, or
     if it has created its node already, but does not spin it.
     """
+    __tracebackhide__ = True
     answer = _notebook().get(name)
     where = 'write it in the answer cell: only the notebook is submitted'
     if answer is None:
