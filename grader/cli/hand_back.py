@@ -63,7 +63,7 @@ def run_feedback(course: Course, asked: argparse.Namespace) -> int:
 
     _wait_for_database(course)
     pages = write_feedback(course, say=_say_line)
-    print(f'{len(pages)} pages in {course.folder("feedback", "", "")}')
+    print(f'{len(pages)} page{"s"[: len(pages) != 1]} in {course.folder("feedback", "", "")}')
     if asked.zip:
         _print_paths(write_feedback_archives(course, _say_line))
     _say_what_comes_first(course)
