@@ -281,12 +281,16 @@ def test_a_server_that_adds_up_short_steps_gets_short_steps_of_the_clock(run, no
 
 @pytest.fixture
 def loses_its_first_time(monkeypatch):
-    """The second simulated clock publishes nothing on `/clock` before its first tick."""
+    """The second simulated clock publishes nothing on `/clock` before its first tick.
+
+    It begins a while after the end of the first, so that nodes know no time that is right.
+    """
     publish, clocks = SimulatedClock._publish, []
 
     def lose(clock):
         if clock not in clocks:
             clocks.append(clock)
+            clock.now_ns += (len(clocks) == 2) * 10**10
         if clocks.index(clock) != 1 or clock._tick_ns:
             publish(clock)
 
