@@ -3,13 +3,11 @@
 import os
 import pwd
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import nbformat
 import pytest
 from course_maker import TOY, answered, released_course
+from nbgrader_command import run_nbgrader
 
 AT = '2026-11-20 10:00:00.000000 UTC'
 SECRET = 'what only instructors may read'
@@ -38,17 +36,7 @@ def inbound(course, tmp_path):
 
 
 def nbgrader_collect(course, inbound):
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ['PATH']])
-    where = ['--course=robots', f'--Exchange.root={inbound.parents[1]}']
-    return subprocess.run(
-        [sys.executable, '-m', 'nbgrader', 'collect', TOY, *where],
-        cwd=course.root,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env=os.environ | {'PATH': path},
-        timeout=120,
-    )
+    return run_nbgrader('collect', TOY, course=course, exchange=inbound.parents[1])
 
 
 def submitted(course):

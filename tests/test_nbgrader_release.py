@@ -1,13 +1,9 @@
 """`nbgrader release_feedback`, and the formgrader's button: each page that can be is released."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 from course_maker import TOY, released_course
 from nbgrader.utils import notebook_hash
+from nbgrader_command import run_nbgrader
 
 pytestmark = pytest.mark.starts
 SECRETS = {'ada': b'', 'bob': b'\xff', 'cem': None, 'dan': b'of dan'}
@@ -15,17 +11,7 @@ SECRETS = {'ada': b'', 'bob': b'\xff', 'cem': None, 'dan': b'of dan'}
 
 
 def nbgrader_release(course, exchange, *options):
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ['PATH']])
-    where = ['--course=robots', f'--Exchange.root={exchange}', *options]
-    return subprocess.run(
-        [sys.executable, '-m', 'nbgrader', 'release_feedback', TOY, *where],
-        cwd=course.root,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env=os.environ | {'PATH': path},
-        timeout=120,
-    )
+    return run_nbgrader('release_feedback', TOY, course=course, exchange=exchange, options=options)
 
 
 @pytest.fixture

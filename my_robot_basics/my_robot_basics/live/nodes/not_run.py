@@ -40,6 +40,8 @@ def _cell_not_run(name: str) -> int:
     0 if there is none. A cell that an exception stopped has not. Cells are counted as in
     JupyterLab's status bar: from 1, texts too.
     """
+    from my_robot_basics.validate.lessons.names import names_of
+
     found = 0
     for number, cell in enumerate(cells_run.lesson().get('cells', ()), start=1):
         if cell.get('id') == cells_run.current():
@@ -47,7 +49,7 @@ def _cell_not_run(name: str) -> int:
         if (
             cell.get('cell_type') == 'code'
             and not _has_run_to_its_end(cell.get('id', ''))
-            and name in _defined(''.join(cell.get('source', '')))
+            and name in names_of(''.join(cell.get('source', ''))).bound
         ):
             found = number
     return 0
@@ -55,18 +57,3 @@ def _cell_not_run(name: str) -> int:
 
 def _has_run_to_its_end(cell_id: str) -> bool:
     return bool(cells_run.text_of(cell_id)) and not cells_run.error_of(cell_id)
-
-
-def _defined(source: str) -> set[str]:
-    """Return the names that a cell defines or imports; none if Python cannot parse it."""
-    import symtable
-
-    try:
-        table = symtable.symtable(kernel.shell().transform_cell(source), 'cell', 'exec')
-    except (SyntaxError, ValueError):
-        return set()
-    return {
-        symbol.get_name()
-        for symbol in table.get_symbols()
-        if symbol.is_assigned() or symbol.is_imported()
-    }
