@@ -249,6 +249,12 @@ def test_texts_that_only_instructors_read_are_not_translated():
     assert 'Half a point for each' not in everything
 
 
+def test_the_texts_are_the_same_whatever_the_name_of_the_checkouts_folder(tmp_path):
+    checkout = tmp_path / 'live'
+    checkout.symlink_to(Course().root)
+    assert parts_of(Course(root=checkout))['checks'] == parts_of(Course())['checks']
+
+
 # --- what a translation keeps --------------------------------------------------------------------
 
 FAULTS = {

@@ -20,9 +20,13 @@ from grader.course import Course
 Texts = dict[str, list[str]]
 """The places of each English text of a part, in reading order."""
 
-ONLY_DRAWN = {
+_DRAWN_IN_LIVE = (
     *('arm', 'branches', 'follow', 'goal_view', 'graph_picture', 'qos_offers', 'qos_pictures'),
-    *('queue_picture', 'service_picture', 'stdout_tap', 'target', 'timeline'),
+    *('queue_picture', 'service_picture', 'target', 'timeline'),
+)
+ONLY_DRAWN = {
+    f'my_robot_basics/my_robot_basics/live/{module}.py'
+    for module in (*(f'pictures/{name}' for name in _DRAWN_IN_LIVE), 'output/stdout_tap')
 }
 """The modules of `live` whose texts are parts of pictures or a thread's name, no sentences."""
 MODULES = {
@@ -115,9 +119,9 @@ def _add(texts: Texts, found: Iterable[str], place: str) -> None:
 def _modules(root: Path, patterns: Sequence[str]) -> Texts:
     texts: Texts = {}
     for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
-        if 'live' in path.parts and path.stem in ONLY_DRAWN:
-            continue
-        _add(texts, messages_in(path.read_text(encoding='utf-8')), str(path.relative_to(root)))
+        place = str(path.relative_to(root))
+        if place not in ONLY_DRAWN:
+            _add(texts, messages_in(path.read_text(encoding='utf-8')), place)
     return texts
 
 
