@@ -143,8 +143,8 @@ class Drawing:
             before = self._targets[number - 1][0] if number else ''
             is_left_out = has_told and number + 1 == len(self._targets)
             how = {'was_skipped': servers.was_skipped(number), 'is_left_out': is_left_out}
-            why = drawing_hints.why_not_asked(self._watcher, before, **how)
-            self._meeting.fail_silent(expected=wanted, **why)
+            hint, cause = drawing_hints.why_not_asked(self._watcher, before, **how)
+            self._meeting.fail_silent(expected=wanted, hint=hint, cause=cause)
 
     def _expect_goal(self, number: int) -> ReceivedGoal:
         goals, place = self._servers.goals, self._goals

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from my_robot_basics.checks.actions.goal_senders import WAITS
 from my_robot_basics.checks.packages.player_servers import (
@@ -41,18 +40,18 @@ def why_no_client(watcher: Watcher) -> str:
 
 def why_not_asked(
     watcher: Watcher, word_before: str, *, was_skipped: bool, is_left_out: bool
-) -> dict[str, Any]:
-    """Why no request comes for a target, as `hint`, and in a few words as `cause`.
+) -> tuple[str, str]:
+    """Why no request comes for a target: the hint, and the cause in a few words.
 
     `word_before`: how the target before it ended, '' for the first one; `was_skipped`: whether a
     request for a later target came; `is_left_out`: it is the last one, and the report came.
     """
     if was_skipped or is_left_out:
-        return {'hint': _LEFT_OUT if is_left_out else _SKIPPED, 'cause': 'a target is skipped'}
+        return _LEFT_OUT if is_left_out else _SKIPPED, 'a target is skipped'
     cause = f'{SOLVE_IK} is not asked'
     if word_before:
         cause = f'{NODE} stops after a target that is {word_before}'
-    return {'hint': _why_silent(watcher, word_before), 'cause': cause}
+    return _why_silent(watcher, word_before), cause
 
 
 def _why_silent(watcher: Watcher, word_before: str) -> str:
