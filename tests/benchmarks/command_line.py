@@ -4,9 +4,10 @@
 
 FOLDER is the working copy of an earlier commit with its own .venv (`./course doctor` makes it):
 commands alternate between both, so that they run under the same conditions. Each has a temporary
-gradebook with one submission, the sample NAME. `grade` is started without the launcher; the
-rows with wrong arguments include the launcher. CPU is that of all processes that were waited for;
-kernels are forked by servers, so theirs is not included. Nothing is asserted: look at the ratios.
+gradebook with one submission, the sample NAME. `grade` is started as the launcher starts it, but
+without the launcher; the rows with wrong arguments include the launcher. CPU is that of all
+processes that were waited for; kernels are forked by servers, so theirs is not included. Nothing
+is asserted: look at the ratios.
 """
 
 import argparse
@@ -19,6 +20,8 @@ import tempfile
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from launcher.environment import ros_libraries
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / 'tests/submissions'
@@ -75,6 +78,8 @@ class Checkout:
         taken = self.taken.setdefault(name, Taken())
         environment = {k: v for k, v in os.environ.items() if not k.startswith(('COV', '_ROS'))}
         environment |= {'PATH': f'{self.root}/.venv/bin:{os.environ["PATH"]}'}
+        if command[0] != './course':  # the launcher would set these
+            environment |= ros_libraries(f'{self.root}/.venv', environment)
         before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
         subprocess.run(command, cwd=self.root, env=environment, capture_output=True, text=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
