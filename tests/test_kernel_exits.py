@@ -131,6 +131,16 @@ MOMENTS = {
 }
 
 
+CRASHES = 'import ctypes; ctypes.string_at(0)'
+"""Stands for data that make Fast DDS crash, which student code may send."""
+
+
+def test_a_check_whose_own_kernel_crashes_is_left_to_a_person_who_learns_how(way):
+    verdict = graded(CRASHES)
+    assert (verdict.outcome, verdict.score) == ('ungraded', None)
+    assert verdict.reason.endswith('the test kernel crashed with SIGSEGV')
+
+
 @pytest.mark.parametrize('hit', [kill, terminate, kill_the_room])
 @pytest.mark.parametrize(('when', 'check', 'answer', 'delay_sec'), MOMENTS.values(), ids=MOMENTS)
 def test_a_kernel_ended_from_outside_is_ungraded_and_not_zero(

@@ -142,10 +142,15 @@ NO_VERDICT = {
     'another exception': (failing('KeyError', 'hidden_target'), 'it stopped with KeyError'),
     'a timeout': (failing('KeyboardInterrupt', '', timed_out=True), 'it did not end in time'),
     'a dead test kernel': (ended(status=None, died=True), 'the test kernel ended'),
-    'killed after a timeout': (ended(status=None, timed_out=True, died=True), 'the test kernel'),
+    'killed after a timeout': (
+        ended(status=None, timed_out=True, died=True), 'the test kernel could not be interrupted',
+    ),
+    'a crashed test kernel': (
+        ended(status=None, died=True, crash='SIGABRT'), 'the test kernel crashed with SIGABRT',
+    ),
     'no reply': (ended(status=None), 'it did not report its end'),
     'aborted': (ended(status='aborted'), 'it did not report its end'),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(('run', 'happened'), NO_VERDICT.values(), ids=NO_VERDICT)

@@ -40,6 +40,12 @@ class Ending:
     cpu_sec: float = 0.0
     """Seconds of processor time that the kernel used."""
 
+    @property
+    def crash(self) -> str:
+        """The signal of a crash, such as SIGSEGV; '' if it ended otherwise."""
+        name = signal_name(self.signal) if self.signal and not self.sent else ''
+        return name if name in _CRASHES else ''
+
     def responsibility(self, memory: MemoryEvents) -> tuple[Responsibility, str]:
         """Return who is responsible, and the reason as text; '' for an ordinary exit."""
         if self.signal is None:

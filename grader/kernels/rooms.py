@@ -109,6 +109,8 @@ class GradingRooms:
         run = await self._test.run(
             source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
         )
+        if run.died and (ended := await self._test.ending()):
+            run.crash = ended.crash
         if not run.ran_to_end:
             run.ending = await self._expect_fair()
         return run

@@ -48,6 +48,8 @@ class CellRun:
     """Whether its kernel ends after this cell, which has called `exit()`."""
     ending: str = ''
     """How the student's kernel or its processes ended, if the student's code caused it."""
+    crash: str = ''
+    """The signal by which the test's kernel crashed, such as SIGSEGV."""
     _kept: int = 0
     _dropped: int = 0
     _foreign: int = 0

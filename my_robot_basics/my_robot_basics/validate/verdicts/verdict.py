@@ -165,6 +165,10 @@ def _who_ended_it(own: list[tuple[str, CellRun]]) -> str:
 
 
 def _what_happened(run: CellRun) -> str:
+    if run.died and run.timed_out:
+        return 'the test kernel could not be interrupted'
+    if run.crash:
+        return f'the test kernel crashed with {run.crash}'
     if run.died:
         return 'the test kernel ended'
     if run.timed_out:
