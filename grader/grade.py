@@ -38,8 +38,8 @@ def grade_all(
     processes. `seed` replays inputs that hidden tests choose; by default each student has a seed
     of their own. Grading again gives the same result. If nothing has changed, the stored result
     is used again, unless `force`. Those in which a check could not decide are graded again at the
-    end, one at a time, and yielded once more. Raises CourseError, before anything runs, if there
-    is no sandbox, unless `trust_students`.
+    end, one at a time, and yielded once more, unless its own kernel crashed or hung. Raises
+    CourseError, before anything runs, if there is no sandbox, unless `trust_students`.
     """
     with backend or Workers() as backend:
         isolated = backend.require_isolation(trust_students=trust_students)
@@ -58,7 +58,7 @@ def grade_all(
             for found, work in run_ahead(submissions, start, at_most=AHEAD * backend.capacity):
                 outcome = grading.store(found, work)
                 yield outcome
-                if outcome.is_undecided:
+                if outcome.may_be_decided:
                     undecided[found] = outcome
             yield from _grade_again(grading, undecided, start)
 

@@ -72,6 +72,11 @@ class SubmissionOutcome:
         """Whether a check could not decide."""
         return self.stored is not None and self.stored.undecided
 
+    @property
+    def may_be_decided(self) -> bool:
+        """Whether a check could not decide, and may if nothing else keeps the machine busy."""
+        return self.stored is not None and self.stored.undecided and not self.stored.broken
+
 
 @dataclass(frozen=True)
 class PreparedAssignment:

@@ -26,6 +26,7 @@ from grader.storage.submitted import find_submissions
 
 RIGHT = 'def double(x):\n    return 2 * x'
 UNDECIDED = '? the machine was too busy'
+BROKEN = '? the test kernel crashed with SIGABRT'
 WRONG = 'def double(x):\n    return x + 1'
 
 
@@ -33,7 +34,7 @@ WRONG = 'def double(x):\n    return x + 1'
 def course(released, tmp_path, monkeypatch):
     """A gradebook of its own; no answer is run, the verdict is made from its text.
 
-    A check of an answer with `busy N` can't decide the first N times.
+    A check of an answer with `busy N` can't decide the first N times, one with `breaks it` never.
     """
     times: Counter[str] = Counter()
 
@@ -44,6 +45,7 @@ def course(released, tmp_path, monkeypatch):
             raise OSError('no room')
         reason = '' if '2 * x' in answer else 'expected 2, saw 3: add it to itself'
         reason = UNDECIDED if times[seed] < int(answer.partition('# busy ')[2] or 0) else reason
+        reason = BROKEN if '# breaks it' in answer else reason
         times[seed] += 1
         notebook = executed(notebook, {'double-check': reason, 'double-hidden': reason})
         notebook.metadata[KEY]['seed'] = seed
@@ -178,6 +180,16 @@ def test_few_are_graded_again_alone_if_none_of_them_can_be_decided(course):
     submit(course, 'eve', answered(course, RIGHT))
     again = [row.student_id for row in grade_all(course, find_submissions(course)) if row.again]
     assert again == [f'ada{number}' for number in range(MOST_IN_VAIN)]
+
+
+def test_answers_that_break_their_checks_take_nobodys_second_grading(course):
+    """They need not be tried again: both attempts at them failed, whatever else was running."""
+    for number in range(MOST_IN_VAIN):
+        submit(course, f'ada{number}', answered(course, f'{RIGHT}  # breaks it'))
+    submit(course, 'eve', answered(course, f'{RIGHT}  # busy 1'))
+    rows = [*grade_all(course, find_submissions(course))]
+    assert [row.student_id for row in rows if row.again] == ['eve']
+    assert [row.is_undecided for row in rows] == [True] * MOST_IN_VAIN + [True, False]
 
 
 def test_the_first_result_stays_if_the_second_grading_fails(course):

@@ -3,7 +3,13 @@
 import nbformat
 import pytest
 from my_robot_basics.validate.kernels.outputs import CellRun
-from my_robot_basics.validate.verdicts.verdict import Verdict, judge, leave_ungraded, write_verdict
+from my_robot_basics.validate.verdicts.verdict import (
+    Verdict,
+    is_broken,
+    judge,
+    leave_ungraded,
+    write_verdict,
+)
 from nbformat.v4 import new_code_cell, new_output
 from nbgrader.utils import determine_grade
 
@@ -153,6 +159,10 @@ NO_VERDICT = {
 }  # fmt: skip
 
 
+BROKEN = 'the test kernel could not be interrupted', 'the test kernel crashed with SIGABRT'
+"""What an answer may have done to its check."""
+
+
 @pytest.mark.parametrize(('run', 'happened'), NO_VERDICT.values(), ids=NO_VERDICT)
 def test_a_check_that_did_not_run_to_its_end_counts_as_a_failure_of_the_grader(
     cell, run, happened
@@ -160,6 +170,7 @@ def test_a_check_that_did_not_run_to_its_end_counts_as_a_failure_of_the_grader(
     with pytest.raises(RoomFailure) as failure:
         judge(cell, run, [])
     assert f'`five_hz_rate` came to no verdict: {happened}' in str(failure.value)
+    assert is_broken(str(failure.value)) is (happened in BROKEN)
     assert 'hidden' not in str(failure.value)
 
 

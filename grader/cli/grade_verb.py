@@ -83,7 +83,7 @@ def _run_grade(
     failed = sum(row.stored is None for row in rows)
     reused = sum(row.reused for row in rows)
     waiting = sum(row.stored is not None and row.stored.pending for row in rows)
-    undecided = sum(row.is_undecided for row in rows)
+    undecided = sum(row.may_be_decided for row in rows)
     again = _AGAIN.format(undecided, 'it' if undecided == 1 else 'them') if undecided else ''
     print(
         f'{len(rows) - failed - reused} graded, {reused} unchanged, {failed} could not be graded '

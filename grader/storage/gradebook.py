@@ -28,7 +28,13 @@ from grader.storage.database import (
 from grader.storage.held_scores import held_score, manual_scores
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
-from grader.storage.pipeline import first_reason, is_undecided, resources_of, store_scores
+from grader.storage.pipeline import (
+    first_reason,
+    has_broken_checks,
+    is_undecided,
+    resources_of,
+    store_scores,
+)
 from grader.storage.registering import register, register_all
 from grader.storage.rewritten_answers import note_rewritten
 
@@ -52,6 +58,8 @@ class StoredResult:
     """The points that lateness takes off the score."""
     undecided: bool = False
     """Whether a check could not decide, and nobody has given its points: it is graded again."""
+    broken: bool = False
+    """Whether the test kernel crashed or hung at one of these checks."""
 
 
 def register_before_autograde(*, assignment: str, **_: object) -> None:
@@ -99,6 +107,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
         reason=first_reason(saved),
         late=now.late,
         undecided=now.pending and is_undecided(graded),
+        broken=now.pending and has_broken_checks(graded),
     )
 
 

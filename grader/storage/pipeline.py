@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import nbformat
-from my_robot_basics.validate.verdicts.verdict import fail_all_checks
+from my_robot_basics.validate.verdicts.verdict import fail_all_checks, is_broken
 from nbformat import NotebookNode
 from nbformat.validator import normalize
 
@@ -129,6 +129,15 @@ def make_unanswered(template: AssignmentTemplate, reason: str) -> NotebookNode:
 def is_undecided(graded: NotebookNode) -> bool:
     """Whether a check of an executed notebook could not decide, and has no score for that."""
     return any(cell.metadata.get(KEY, {}).get('outcome') == 'ungraded' for cell in graded.cells)
+
+
+def has_broken_checks(graded: NotebookNode) -> bool:
+    """Whether the test kernel crashed or hung at a check, which no busy machine explains.
+
+    An answer can cause it by what it sends to Fast DDS.
+    """
+    verdicts = [cell.metadata.get(KEY, {}) for cell in graded.cells]
+    return any(v.get('outcome') == 'ungraded' and is_broken(v.get('reason', '')) for v in verdicts)
 
 
 def first_reason(graded: NotebookNode) -> str:

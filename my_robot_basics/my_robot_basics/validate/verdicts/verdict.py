@@ -1,5 +1,6 @@
 """Turn the result of a grade cell into a verdict with its reason, and write it into the cell."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
@@ -24,6 +25,7 @@ UNGRADED = 'not graded, a person has to look at it: '
 """How the reason begins if the grader itself failed."""
 _FAILURES = ('CheckFailed', 'PartlyRight', STARVED, DISTURBED, 'AssertionError')
 _SHOWN = ('display_data', 'stream')
+_BROKEN = re.compile('the test kernel (crashed with|could not be interrupted)')
 
 
 @dataclass(frozen=True)
@@ -144,6 +146,11 @@ def write_verdict(cell: NotebookNode, verdict: Verdict, outputs: Iterable[Notebo
     if verdict.outcome == 'partial':
         data = {'text/plain': repr(verdict.earned)}
         cell.outputs.append(nbformat.v4.new_output('execute_result', data=data))
+
+
+def is_broken(reason: str) -> bool:
+    """Whether the reason of an `ungraded` outcome is that the test kernel crashed or hung."""
+    return bool(_BROKEN.search(reason))
 
 
 def _notes(run: CellRun) -> Iterable[str]:
