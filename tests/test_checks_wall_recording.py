@@ -75,7 +75,7 @@ def test_a_recording_waits_longer_for_a_node_that_seemed_to_ignore_the_clock(mon
     watcher = SimpleNamespace(late_sec=0.0)
     watcher.spin_until = lambda until, timeout_sec: waited.append(timeout_sec)
     recorder = object.__new__(Recorder)
-    recorder.received, recorder.topic_name = [(None, 0)], TOPIC
+    recorder.received, recorder.offsets_ns, recorder.topic_name = [(None, 0)], [0], TOPIC
     recorder.take_all, recorder.publishers = (lambda: None), (lambda: ('/a',))
     monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: 30.0)
     wall_recording.record(watcher, recorder, why=why, timeout_sec=4.0)
@@ -92,12 +92,13 @@ def test_a_recording_does_not_begin_with_a_message_of_the_clock_change(
     times_sec = [100.1, *(100.0 + 30.0 + 0.2 * n for n in range(100))]
     watcher = SimpleNamespace(late_sec=0.0)
     recorder = object.__new__(Recorder)
-    recorder.received, recorder.topic_name = [], TOPIC
+    recorder.received, recorder.offsets_ns, recorder.topic_name = [], [], TOPIC
     recorder.publishers = lambda: ('/a',)
 
     def take_all():
         while times_sec and times_sec[0] <= now.sec:
             recorder.received.append((None, round(times_sec.pop(0) * 1e9)))
+            recorder.offsets_ns.append(0)
 
     def spin_until(done, timeout_sec):
         end_sec = now.sec + timeout_sec

@@ -22,6 +22,8 @@ class Sample:
     """When it was sent, on the recording's clock, since the recording began."""
     source_time_sec: float
     """When it was sent, on the wall clock, since the epoch: DDS's source timestamp."""
+    offset_sec: float = 0.0
+    """How long after that it arrived; on the wall clock."""
 
 
 @dataclass(frozen=True, kw_only=True)

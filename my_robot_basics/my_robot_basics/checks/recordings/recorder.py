@@ -30,6 +30,8 @@ class Recorder:
         self.topic_name = topic_name
         self.type = type_
         self.received: list[tuple[Any, int]] = []
+        self.offsets_ns: list[int] = []
+        """How long after its time of sending each of them arrived."""
         self._node = watcher.node
         self._qos_profile = qos_profile
         self._subscription = self._node.create_subscription(
@@ -97,4 +99,6 @@ class Recorder:
         self._node.destroy_subscription(self._subscription)
 
     def _receive(self, message: Any, info: dict) -> None:
-        self.received.append((message, info['source_timestamp']))
+        sent_ns = info['source_timestamp']
+        self.received.append((message, sent_ns))
+        self.offsets_ns.append(info['received_timestamp'] - sent_ns)

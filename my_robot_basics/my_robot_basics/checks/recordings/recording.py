@@ -14,12 +14,15 @@ from my_robot_basics.checks.recordings import (
 )
 from my_robot_basics.checks.recordings.recorded_messages import RecordedMessages
 from my_robot_basics.checks.values import joints
-from my_robot_basics.feedback.errors import CheckFailed, expect, shorten, show
+from my_robot_basics.feedback.errors import CheckFailed, Starved, expect, shorten, show
 
 SECOND_LOOK_SEC = 4.0
 LONGER_LOOK_SEC = 8.0
 """How long to record again on the wall clock if the first recording leaves the period in doubt."""
 LONGEST_LOOK_SEC = 12.0
+MISDATED_SEC = 0.1
+"""A message that arrives so long after, or before, the time at which it says it was sent is
+misdated: DDS takes a millisecond, and the sender writes that time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +41,7 @@ class Recording(RecordedMessages):
         clock far too many messages. A callback that raised fails: `rclpy.spin` would have ended.
         """
         self._expect_one_publisher()
+        self._expect_true_times()
         callbacks.expect_none_so_far(self.publishers)
         is_right, is_doubtful = rates.has_rate(self, hz), rates.is_doubtful(self, hz)
         seconds, second = LONGER_LOOK_SEC if is_doubtful else SECOND_LOOK_SEC, None
@@ -115,6 +119,18 @@ class Recording(RecordedMessages):
             hint='stop the other node: two publishers on a topic add up'
             if len(names) > 1
             else 'call create_publisher for this topic once, and start the node once',
+        )
+
+    def _expect_true_times(self) -> None:
+        """Most messages arrive when they say they were sent. Raises CheckFailed."""
+        misdated = sum(abs(each.offset_sec) > MISDATED_SEC for each in self.messages)
+        expect(
+            misdated <= len(self.messages) / 2,
+            expected=f'messages on {self.topic_name} that arrive when they are sent',
+            seen=f'{misdated} that arrive 0.1 s before or after the time that they say',
+            hint='call publish(…) of a publisher of rclpy, which writes that time itself',
+            cause='messages arrive at other times than they say',
+            doubt=Starved if self.late_sec > MISDATED_SEC else CheckFailed,
         )
 
     def _messages_with(self, field_name: str) -> list:

@@ -67,10 +67,12 @@ def record(
     if is_ahead and ahead_sec() and recorder.count_since(since_ns) == 1:
         # a change of the clock wakes a thread that sleeps until a time; its next message is later
         since_ns, watch = record()
-    sent = [(message, sent_ns) for message, sent_ns in recorder.received if sent_ns > since_ns]
+    arrived = zip(recorder.received, recorder.offsets_ns, strict=True)
+    sent = [(message, ns, offset_ns) for (message, ns), offset_ns in arrived if ns > since_ns]
     start_ns = sent[0][1] if sent else since_ns
     samples = [
-        Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9) for message, sent_ns in sent[1:]
+        Sample(message, (sent_ns - start_ns) / 1e9, sent_ns / 1e9, offset_ns / 1e9)
+        for message, sent_ns, offset_ns in sent[1:]
     ]
     next_sec = samples[0].time_sec if samples else timeout_sec
     seconds = max(seconds, next_sec)
