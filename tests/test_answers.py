@@ -4,7 +4,8 @@ import answer_table
 import nbformat
 import pytest
 from answer_table import Answer, all_answers, answers_to, in_class, paper
-from answered import LESSONS
+from answered import LESSONS, read
+from my_robot_basics.validate.lessons.exercises import find_exercises
 
 from grader.course import Course
 from grader.grade import grade_all
@@ -56,6 +57,17 @@ def test_every_lesson_has_answers_and_the_first_of_each_exercise_earns_full_poin
     packages = {'12_package'}  # whose answer is a folder: tests/changed_packages.py
     assert {each.lesson for each in usual} == set(LESSONS) - packages
     assert all(each.points == each.full for each in usual)
+
+
+def test_a_table_of_answers_names_each_check_of_its_exercise_with_its_points():
+    for first in (
+        answers_to(exercise)[0] for exercise in {each.exercise for each in all_answers()}
+    ):
+        cells = (lesson := read('notebooks', first.lesson)).cells
+        (exercise,) = (each for each in find_exercises(lesson) if each.name == first.exercise)
+        marks = [cells[index].metadata.nbgrader for index in exercise.grades]
+        checks = {mark.grade_id: mark.points for mark in marks}
+        assert first.full == checks, f'the lines `check` in tests/answers/{first.exercise}.txt'
 
 
 @pytest.mark.parametrize(

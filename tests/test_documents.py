@@ -155,7 +155,7 @@ FIGURES = {
         f'which holds no gradebook; {MAX_SOURCE_CHARACTERS:,} characters',
         f'{cell_limits.MAX_MESSAGE_BYTES // 10**6} MB, {cell_limits.MAX_MESSAGE_PARTS:,} parts, '
         f'{MAX_OUTPUT_CHARACTERS:,} characters a cell',
-        f'in linear time, {cell_limits.MAX_REPLY:,} characters',
+        f'in linear time, {cell_limits.MAX_REPLY_CHARACTERS:,} characters',
         f'{formgrader.LIMITS.cpu_sec} or {feedback.LIMITS.cpu_sec} s of processor time',
         f'{similar_answers.LIMITS.cpu_sec} s for each exercise; answers of up to '
         f'{similar_answers.MOST_CHARACTERS:,} characters',
@@ -174,7 +174,21 @@ FIGURES = {
         f'{timeouts.MOST_TIMES * cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s for one that works',
         f'{cell_limits.CHECK_TIMEOUT_SEC:.0f} s each at most',
     ],
-    'docs/decisions.md': [f'A list of {len(ALLOWED)} names and numbers'],
+    'docs/grading-a-package.md': [
+        f'this cell has {cell_limits.BUILD_TIMEOUT_SEC:.0f} s instead of '
+        f'{cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s',
+        f'If it takes over {cell_limits.BUILD_TIMEOUT_SEC:.0f} s, it is done again',
+    ],
+    'docs/decisions.md': [
+        f'A list of {len(ALLOWED)} names and numbers',
+        f'given up after {cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s as before; '
+        f'others have up to {timeouts.MOST_TIMES * cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s',
+        f'A build has {cell_limits.BUILD_TIMEOUT_SEC:.0f} s',
+        f'gives up a cell or a function after {cell_limits.VALIDATE_TIMEOUT_SEC} s',
+        f'grading waits {cell_limits.STUDENT_CELL_TIMEOUT_SEC:.0f} s. The checks of an exercise '
+        f'have {cell_limits.VALIDATE_CHECKS_SEC:.0f} s of free time together, and '
+        f'{cell_limits.VALIDATE_CHECKS_MOST_SEC:.0f} s at most',
+    ],
 }
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from answered import read
 from changed_packages import ALL
 from package_changes import FULL, LESSON, write
 from sample_class import EXPECTED, PATHS, assignment_of, grade, package_of, rebased
@@ -167,6 +168,14 @@ def validated(tmp_path_factory):
 
 def test_every_sample_has_expected_scores():
     assert set(EXPECTED) == set(PATHS)
+
+
+def test_each_sample_has_an_expected_score_for_each_check_of_its_lesson():
+    for name, path in PATHS.items():
+        lesson = assignment_of(path)
+        marks = [cell.metadata.get('nbgrader', {}) for cell in read('notebooks', lesson).cells]
+        checks = {mark['grade_id'] for mark in marks if mark.get('grade')}
+        assert {*EXPECTED[name]} == checks, f'{name} in tests/submissions/expected/{lesson}.json'
 
 
 def test_a_sample_with_a_package_earns_the_points_of_that_package():

@@ -41,5 +41,5 @@ MAX_MESSAGES_WAITING = 2
 of the kernel that sends them, and the oldest are kept."""
 MAX_NOTEBOOK_OUTPUT_CHARACTERS = 4_000_000
 """For all cells together; each cell also has its own limit."""
-MAX_REPLY = 2 * 65_536
+MAX_REPLY_CHARACTERS = 2 * 65_536
 """Characters of a reply as a Python literal: 64 kB, doubled because a backslash takes two."""

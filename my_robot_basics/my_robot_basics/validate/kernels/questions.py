@@ -9,7 +9,7 @@ import contextlib
 import json
 import re
 
-from my_robot_basics.validate.kernels.limits import FLOOD_CHARACTERS, MAX_REPLY
+from my_robot_basics.validate.kernels.limits import FLOOD_CHARACTERS, MAX_REPLY_CHARACTERS
 from my_robot_basics.validate.kernels.outputs import CUT_OFF, CellRun
 
 STUDENT_COMES = """
@@ -58,7 +58,7 @@ def reply_of(run: CellRun, *, within_sec: float, at_grading_sec: float = 0.0) ->
     if run.died:
         return _failed('the kernel of your notebook has ended')
     match run.expressions:
-        case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY:
+        case {'reply': {'data': {'text/plain': str(text)}}} if len(text) > MAX_REPLY_CHARACTERS:
             return _failed(f'an answer of {len(text):,} characters')
         case {'reply': {'data': {'text/plain': str(text)}}} if _STRING.fullmatch(text):
             # an invalid code point or a lone surrogate is refused
