@@ -7,6 +7,7 @@ import pytest
 from course_maker import TOY, make_course, toy_lesson, write_source
 from my_robot_basics.language.catalogues import catalogue_path, languages, read_translations
 from my_robot_basics.language.speaking import PARTS
+from translation_faults import faults_of, read_glossary, unknown_terms
 
 from grader.authoring.blocks import (
     split_blocks,
@@ -18,7 +19,6 @@ from grader.authoring.blocks import (
 from grader.authoring.editions import editions, is_translated
 from grader.authoring.translatable import MODULES, parts_of
 from grader.authoring.translate import report_lines, update_catalogues
-from grader.authoring.translation_faults import faults_of, read_glossary, unknown_terms
 from grader.common.errors import CourseError
 from grader.course import ROOT, Course
 
@@ -182,7 +182,7 @@ def test_a_part_that_is_not_begun_is_named_with_its_file(course):
     catalogue_path(course.root / 'locale', 'zh_CN', TOY).unlink()
     assert [*report_lines([of_the_toy(update_catalogues(course))])] == [
         f'zh_CN  {TOY}: 0 of 4',
-        f'    not begun: locale/zh_CN/LC_MESSAGES/{TOY}.po has all texts',
+        f'    not begun: fill the msgstr lines of locale/zh_CN/LC_MESSAGES/{TOY}.po',
     ]
 
 

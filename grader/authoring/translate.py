@@ -110,7 +110,7 @@ def report_lines(reports: list[PartReport], *, most: int = 10) -> Iterator[str]:
         yield f'{report.language}  {report.part}: {done} of {report.texts}'
         if done == 0:  # not begun yet: do not list every text
             folder = f'locale/{report.language}/{MESSAGES}'
-            yield f'    not begun: {folder}/{report.part}.po has all texts'
+            yield f'    not begun: fill the msgstr lines of {folder}/{report.part}.po'
             continue
         for word, left in (('out of date', report.outdated), ('missing', report.missing)):
             for place, text in left[:most]:
