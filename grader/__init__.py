@@ -19,7 +19,7 @@ named before it in LAYERS:
   results.
 - `export`: What leaves the gradebook as files: scores, totals, sample solutions.
 - `report`: What people read: feedback for students; progress, run report and formgrader for
-  teachers.
+  instructors.
 - `passback`: Scores and feedback in the forms that course platforms import.
 - `serving`: The resident process that grades each submission as it arrives, and releases feedback.
 - `common`: What every part uses: errors, files, text, names of students, dates, a process that

@@ -25,7 +25,7 @@ LINK = 'a link: only files are taken'
 DEVICE = 'a device or the like: only files are taken'
 CHANGED = 'it was changed while it was read: collect again'
 MAX_ARCHIVE_BYTES = 500_000_000
-"""A whole class's archive is smaller, and is in a folder that only the teacher writes to."""
+"""A whole class's archive is smaller, and is in a folder that only the instructor writes to."""
 _FLAGS = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
 _CHUNK = 1 << 20
 

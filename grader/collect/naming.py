@@ -173,7 +173,7 @@ class Naming:
         return assignment
 
     def _all_by_platform(self, notebooks: Sequence[Incoming], students: Sequence[str]) -> bool:
-        """Whether platforms or the exchange named all notebooks, in folders that the teacher made.
+        """Whether a platform or the exchange named all notebooks, in folders of the instructor.
 
         A student's own folder could contain an imitation of such names. Then it would be beside
         other such folders, or have the name of a known student.

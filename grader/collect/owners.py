@@ -49,7 +49,7 @@ def find_owners(
 def foreign_file_reason(each: Incoming, student: str) -> str:
     """Return why a file beside a student's notebook is not taken with it; '' if it is taken.
 
-    Other users may have write access to the teacher's folder.
+    Other users may have write access to the instructor's folder.
     """
     if each.login in ('', student):
         return ''

@@ -30,7 +30,7 @@ class Platform:
     is_plain: bool = False
     """Whether an upload can be collected by itself: nothing else has a name of this form."""
     may_be_class: bool = False
-    """Whether a teacher's folder may happen to have a name of its form, that of a class."""
+    """Whether an instructor's folder may happen to have a name of its form, that of a class."""
     marks_late_files: bool = False
     """Whether it marks a file in such a folder that is handed in late."""
 

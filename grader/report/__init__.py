@@ -1,1 +1,1 @@
-"""What people read: feedback for students; progress, run report and formgrader for teachers."""
+"""What people read: feedback for students; progress, run report and formgrader for instructors."""
