@@ -22,7 +22,7 @@ from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.storage import gradebook
 from grader.storage import records as records_module
-from grader.storage.gradebook import store
+from grader.storage.gradebook import recover, store
 from grader.storage.pipeline import make_sanitized_template, make_unanswered, sanitize_restored
 from grader.storage.records import records, verdicts
 from grader.storage.registering import register
@@ -215,6 +215,23 @@ def test_an_interrupted_storing_is_completed_by_the_next_reading(
     assert ('no' if stored[1] else 'not that') in {said[name].reason for name in cells}
     kept = course.folder('autograded', 'ada', TOY)
     assert [p.name for p in kept.iterdir() if p.suffix != '.new'] == [f'{TOY}.ipynb']
+
+
+def test_a_result_that_is_completed_later_is_reported_with_its_former_score(
+    course, monkeypatch, capsys
+):
+    """The next run finds it stored, and calls it unchanged."""
+    grade(course, 'ada', {'double-check': 'no'})
+    with monkeypatch.context() as patch:
+        kill_at(patch, 'store_scores', 'before')
+        with pytest.raises(Killed):
+            grade(course, 'ada', {'double-hidden': 'not that'})
+    recover(course)
+    said = capsys.readouterr().err
+    assert said.startswith(f'ada  {TOY}  2 → 1 of ')
+    assert 'an earlier run ended while it stored this result' in said
+    recover(course)
+    assert capsys.readouterr().err == ''
 
 
 def test_a_begun_result_that_cannot_be_stored_is_reported_and_discarded(course, caplog):

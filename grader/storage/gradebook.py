@@ -3,6 +3,7 @@
 import json
 import logging
 import shutil
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,7 +26,7 @@ from grader.storage.database import (
     raise_gradebook_errors,
     wait_until_free,
 )
-from grader.storage.held_scores import held_score, manual_scores
+from grader.storage.held_scores import HeldScore, held_score, manual_scores
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import (
@@ -112,7 +113,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
 
 
 def recover(course: Course) -> None:
-    """Finish storing what a killed run had begun to store."""
+    """Finish storing what a killed run had begun to store, and print it: no run reports it."""
     found = sorted(course.folder('autograded', '', '').glob(f'*/*/{_JOURNAL.format("*")}'))
     if not found:
         return
@@ -130,12 +131,28 @@ def recover(course: Course) -> None:
                 )
                 with raise_gradebook_errors(course):
                     wait_until_free(course)
-                    _store_all(course, submission, nbformat.read(journal, as_version=4))
+                    with open_database(course.db_url) as book:
+                        former = held_score(book, student, assignment)
+                        _store_all(course, submission, nbformat.read(journal, as_version=4))
+                        now = held_score(book, student, assignment)
+                print(_finished(student, assignment, former, now), file=sys.stderr, flush=True)
             except GradebookError:
                 raise
             except Exception:  # for example because the lesson has changed: it is graded again
                 logging.exception('%s of %s is not stored', assignment, printable(student))
                 journal.unlink()
+
+
+def _finished(
+    student: str, assignment: str, former: HeldScore | None, now: HeldScore | None
+) -> str:
+    """Return what is said of a result that a killed run had begun to store."""
+    assert now is not None  # it was stored
+    score = f'{now.score:g}' if former is None else f'{former.score:g} → {now.score:g}'
+    return (
+        f'{printable(student)}  {assignment}  {score} of {now.max_score:g}: an earlier run ended '
+        'while it stored this result; it is complete now'
+    )
 
 
 def _store_all(course: Course, submission: Submission, graded: NotebookNode) -> NotebookNode:
