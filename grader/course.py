@@ -183,9 +183,16 @@ class Course:
 
 
 def _read(path: Path, gradebook: Path, *, otherwise: str, way_out: str) -> NotebookNode:
+    text = ''
     try:
-        return read_lesson(path.read_text(encoding='utf-8'), gradebook)
+        return read_lesson(text := path.read_text(encoding='utf-8'), gradebook)
     except FileNotFoundError:
         raise CourseError(otherwise) from None
     except ValueError as error:
+        if '\n<<<<<<< ' in text:
+            raise CourseError(
+                f'{path} has two versions in it, which git could not merge: keep yours with '
+                f"git checkout --ours '{path}', or take the other with --theirs; then run "
+                './course release'
+            ) from None
         raise CourseError(f'{path} is not a notebook: {error}; {way_out}') from None

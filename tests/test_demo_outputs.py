@@ -134,6 +134,23 @@ def test_a_release_takes_the_pictures_out_of_the_source_and_keeps_its_own(tmp_pa
     assert course.release_path(TOY).read_bytes() == before
 
 
+def test_a_picture_that_a_damaged_release_had_is_reported_and_can_be_taken_back(tmp_path):
+    course = make_course(tmp_path)
+    release(course)
+    path = course.release_path(TOY)
+    before = path.read_bytes()
+    path.write_bytes(b'<<<<<<< HEAD\n' + before)
+    told = []
+    release(course, say=told.append)
+    [missing] = [line for line in told if 'picture is missing' in line]
+    assert f'because notebooks/{TOY}/{TOY}.ipynb could not be read. Take that file back' in missing
+    path.write_bytes(before)
+    told.clear()
+    release(course, say=told.append)
+    assert told == []
+    assert path.read_bytes() == before
+
+
 @pytest.mark.parametrize('path', sorted(ROOT.glob('solutions/*/*.ipynb')), ids=lambda p: p.stem)
 def test_the_lessons_are_stored_as_cleaned_sources(path):
     sanitize = read_sanitizer(ROOT / 'solutions/nbval_sanitize.cfg')

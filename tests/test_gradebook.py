@@ -1,3 +1,4 @@
+import copy
 import csv
 import json
 import os
@@ -63,7 +64,13 @@ def test_a_changed_check_is_registered_again_and_scores_stay(course, released):
         assert by_cell(course, 'ada')['double-check'].score == 1.0
         changed.cells[6].metadata['nbgrader']['grade_id'] = 'renamed'
         write_source(course, changed)
-        with pytest.raises(CourseError, match='new cells: renamed; gone: double-check'):
+        with pytest.raises(CourseError, match=r'new cells: renamed; gone: double-check.*: give'):
+            register(course, TOY)
+        more = toy_lesson()
+        more.cells.append(copy.deepcopy(more.cells[6]))
+        more.cells[-1].id = more.cells[-1].metadata['nbgrader']['grade_id'] = 'one_more'
+        write_source(course, more)
+        with pytest.raises(CourseError, match=r'new cells: one_more; gone: none.*: take the'):
             register(course, TOY)
     finally:
         write_source(course, toy_lesson())

@@ -126,6 +126,15 @@ def test_grade_and_release_name_a_lesson_that_is_not_a_notebook(verb, tmp_path, 
     assert capsys.readouterr().err == f'course: {path} is not a notebook: {why}\n'
 
 
+def test_a_lesson_that_git_could_not_merge_is_refused_with_the_way_to_choose(tmp_path, capsys):
+    course = released_course(tmp_path)
+    path = course.source_path(TOY)
+    ours = path.read_text()
+    path.write_text(ours.replace('{', '{\n<<<<<<< HEAD\n', 1) + '\n=======\n>>>>>>> theirs\n')
+    assert main(['release'], course=course) == 1
+    assert f"git checkout --ours '{path}'" in capsys.readouterr().err
+
+
 def test_release_replaces_a_released_lesson_that_is_not_a_notebook(tmp_path, capsys):
     course = released_course(tmp_path)
     path = course.release_path(TOY)

@@ -127,10 +127,15 @@ def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterat
         doubtful = keep_outputs(notebook, before, sanitize, fresh=fresh)
         write_whole(path, nbformat.writes(notebook) + '\n')
         for cell in doubtful:
-            yield (
-                f'{_source_name(name)}, cell {cell!r}: its code has changed, and its picture has '
-                'not. Run the lesson in JupyterLab, save it, and release it again'
+            why = (
+                'its code has changed, and its picture has not. Run the lesson in JupyterLab, '
+                'save it, and release it again'
+                if before.cells
+                else f'its picture is missing, because notebooks/{name}/{name}.ipynb could not be '
+                'read. Take that file back from git, or run the lesson in JupyterLab and save it; '
+                'then release it again'
             )
+            yield f'{_source_name(name)}, cell {cell!r}: {why}'
 
 
 def _leaks(course: Course, released: Path) -> list[str]:

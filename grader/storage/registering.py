@@ -33,11 +33,15 @@ def register(course: Course, assignment: str) -> bool:
             sorted((known or {}).keys() - wanted),
         )
         if (came or went) and book.assignment_submissions(assignment):
+            way_out = (
+                'give the cells their former grade ids'
+                if went
+                else 'take the new cells out, or put them into a lesson of their own'
+            )
             raise CourseError(
                 f"{assignment} can't be changed like this after submissions were graded "
                 f'(new cells: {", ".join(came) or "none"}; gone: {", ".join(went) or "none"}): '
-                'give the cells their former grade ids, or keep this gradebook/ elsewhere and '
-                'begin a new one.'
+                f'{way_out}, or keep this gradebook/ elsewhere and begin a new one.'
             )
         book.update_or_create_assignment(assignment)
     apply_preprocessors(
