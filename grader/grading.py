@@ -26,6 +26,7 @@ from grader.storage.reuse import (
     files_digest,
     find_earlier_result,
     key_of,
+    lesson_digest,
     refresh_late_penalty,
     write_key,
 )
@@ -88,8 +89,10 @@ class PreparedAssignment:
     """Returns the seed of a submission."""
     packages: tuple[str, ...]
     """ROS packages that are handed in with the notebook."""
+    lesson: str
+    """A hash of the lesson."""
     conditions: str
-    """A hash of everything else that a result depends on."""
+    """A hash of everything else that a result depends on, with the lesson."""
 
 
 @dataclass(frozen=True)
@@ -109,11 +112,13 @@ class Grading:
         with raise_gradebook_errors(self.course), gradebook_lock(self.course.gradebook):
             register(self.course, assignment)
             template = self.course.template(assignment)
+            lesson = lesson_digest(self.course, assignment)
             return PreparedAssignment(
                 template=cache(partial(self._prepared, assignment, template)),
                 seed_of=(lambda _: self.seed) if self.seed else seeds(self.course, assignment),
                 packages=self.course.packages(assignment),
-                conditions=conditions_digest(self.course, assignment, isolated=self.isolated),
+                lesson=lesson,
+                conditions=conditions_digest(lesson, isolated=self.isolated),
             )
 
     def _prepared(self, assignment: str, template: AssignmentTemplate) -> AssignmentTemplate:
@@ -151,7 +156,12 @@ class Grading:
             trust_students=self.trust_students,
         )
         digest = files_digest(submission)
-        return then(judged, lambda result: _graded(submission, files, result, key, digest))
+
+        def graded(result: Result) -> GradedSubmission:
+            write_key(result.notebook, key, digest, prepared.lesson)
+            return GradedSubmission(submission, result.notebook, files, seconds=result.seconds)
+
+        return then(judged, graded)
 
     def _earlier(self, submission: Submission, key: str) -> NotebookNode | None:
         return None if self.force else find_earlier_result(self.course, submission, key)
@@ -189,10 +199,3 @@ class Grading:
         return SubmissionOutcome(
             found.student_id, found.assignment, stored, reason, seconds, reused
         )
-
-
-def _graded(
-    submission: Submission, files: Mapping[str, bytes], result: Result, key: str, digest: str
-) -> GradedSubmission:
-    write_key(result.notebook, key, digest)
-    return GradedSubmission(submission, result.notebook, files, seconds=result.seconds)

@@ -4,14 +4,23 @@ import os
 import time
 
 import pytest
-from course_maker import TOY, answered, executed, released_course, submit
+from course_maker import (
+    TOY,
+    answered,
+    executed,
+    released_course,
+    submit,
+    toy_lesson,
+    write_source,
+)
 
 from grader.__main__ import main
+from grader.authoring.release import release
 from grader.notebook.restore import restore
 from grader.notebook.submission import TIMESTAMP, read_submission
 from grader.storage.gradebook import store
 from grader.storage.pipeline import sanitize_restored
-from grader.storage.reuse import files_digest, write_key
+from grader.storage.reuse import files_digest, lesson_digest, write_key
 from grader.storage.ungraded import ungraded
 
 RIGHT = 'def double(x):\n    return x + x'
@@ -34,7 +43,7 @@ def grade(course, student):
     submission = read_submission(folder, student_id=student, assignment=TOY)
     restored = restore(submission.notebook, course.template(TOY)).notebook
     graded = executed(sanitize_restored(course, TOY, restored), {})
-    write_key(graded, 'key', files_digest(submission))
+    write_key(graded, 'key', files_digest(submission), lesson_digest(course, TOY))
     store(course, submission, graded)
 
 
@@ -85,3 +94,26 @@ def test_what_is_handed_back_names_a_new_submission(course, capsys, asked):
     for step in ('submitted', 'autograded'):
         (course.folder(step, 'bob', TOY) / f'{TOY}.ipynb').unlink()
         course.folder(step, 'bob', TOY).rmdir()
+
+
+@pytest.mark.parametrize('asked', [['scores'], ['scores', '--totals'], ['feedback']])
+def test_what_is_handed_back_names_a_lesson_that_has_changed_since(tmp_path, capsys, asked):
+    """A check is worth more now: the table has the new points beside the earlier score."""
+    course = released_course(tmp_path)
+    submit(course, 'ada', answered(course, RIGHT))
+    grade(course, 'ada')
+    make_newer(course.source_path(TOY).parent)
+    assert main(asked, course=course) == 0
+    assert capsys.readouterr().err == ''
+    changed = toy_lesson()
+    changed.cells[6].metadata['nbgrader']['points'] = 5
+    write_source(course, changed)
+    release(course)
+    assert main(asked, course=course) == 0
+    assert capsys.readouterr().err == (
+        f'Changed since submissions were graded: {TOY}. What was written has the earlier results. '
+        'Next: ./course grade, then this again\n'
+    )
+    grade(course, 'ada')
+    assert main(asked, course=course) == 0
+    assert capsys.readouterr().err == ''

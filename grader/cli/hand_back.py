@@ -15,7 +15,7 @@ from grader.passback.write import write_feedback_archives, write_platform_scores
 from grader.storage.database import has_database, open_database, wait_until_free
 from grader.storage.failures import gone_message
 from grader.storage.registering import withdrawn
-from grader.storage.ungraded import ungraded
+from grader.storage.ungraded import changed_lessons, ungraded
 
 MOST_NAMED = 10
 """How many submissions that are not graded yet are named."""
@@ -110,7 +110,14 @@ def _say_what_comes_first(course: Course) -> None:
     """Print what is to be graded first: without that, what is handed back is not up to date."""
     if not _is_graded(course):
         print('Nothing is graded yet. Next: ./course grade', file=sys.stderr)
-    elif found := ungraded(course):
+        return
+    if lessons := changed_lessons(course):
+        print(
+            f'Changed since submissions were graded: {", ".join(lessons)}. What was written has '
+            'the earlier results. Next: ./course grade, then this again',
+            file=sys.stderr,
+        )
+    if found := ungraded(course):
         named = [f'{each.student_id} {each.assignment}' for each in found[:MOST_NAMED]]
         if more := len(found) - len(named):
             named.append(f'{more} more')

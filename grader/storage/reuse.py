@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 import nbformat
@@ -21,16 +22,21 @@ from grader.storage.pipeline import apply_preprocessors, first_reason, resources
 
 LATE = ('grader.storage.late_penalties.LatePenalties',)
 """The penalty is computed again: a due date may have moved, and results don't depend on it."""
-_UNDER, _FILES = 'graded_under', 'graded_files'
+_UNDER, _FILES, _LESSON = 'graded_under', 'graded_files', 'graded_lesson'
 
 
-def conditions_digest(course: Course, assignment: str, *, isolated: bool) -> str:
-    """Return a hash of all that the results of all students of an assignment depend on."""
+def lesson_digest(course: Course, assignment: str) -> str:
+    """Return a hash of a lesson, as it is in solutions/ and in notebooks/, without its outputs."""
     lesson = [
         _cells_without_outputs(course.source(assignment)),
         _cells_without_outputs(course.release(assignment)),
     ]
-    return _digest(json.dumps([lesson, isolated, software_hash()], sort_keys=True).encode())
+    return _digest(json.dumps(lesson, sort_keys=True).encode())
+
+
+def conditions_digest(lesson: str, *, isolated: bool) -> str:
+    """Return a hash of all that the results of all students depend on; `lesson` is its digest."""
+    return _digest(json.dumps([lesson, isolated, software_hash()]).encode())
 
 
 def key_of(submission: Submission, given: str, *, seed: str) -> str:
@@ -45,11 +51,18 @@ def files_digest(submission: Submission) -> str:
     return _digest(json.dumps(_digests(submission, with_notebook=True)).encode())
 
 
-def write_key(graded: NotebookNode, key: str, files: str) -> None:
-    """Write the key and the hash of the files into a graded notebook; it is stored with both."""
+def write_key(graded: NotebookNode, key: str, files: str, lesson: str) -> None:
+    """Write a key, and the hashes of files and lesson, into a graded notebook; it keeps them."""
     graded.metadata.setdefault(KEY, nbformat.from_dict({'notes': []})).update(
-        {_UNDER: key, _FILES: files}
+        {_UNDER: key, _FILES: files, _LESSON: lesson}
     )
+
+
+def are_of_another_lesson(course: Course, assignment: str, graded: Iterable[Path]) -> bool:
+    """Whether one of these graded notebooks is known to be of another version of its lesson."""
+    now = lesson_digest(course, assignment)
+    texts = (path.read_text(encoding='utf-8', errors='replace') for path in graded)
+    return any(f'"{_LESSON}"' in text and now not in text for text in texts)
 
 
 def is_of_other_files(course: Course, submission: Submission) -> bool:

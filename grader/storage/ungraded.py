@@ -1,4 +1,4 @@
-"""Submissions that wait to be graded: what is handed back has an earlier result, or none."""
+"""What waits to be graded: what is handed back has earlier results of it, or none."""
 
 import os
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.notebook.submission import unread_submission
-from grader.storage.reuse import is_of_other_files
+from grader.storage.reuse import are_of_another_lesson, is_of_other_files
 from grader.storage.submitted import SubmissionFolder, find_submissions, is_new
 
 
@@ -21,6 +21,22 @@ def ungraded(course: Course) -> list[SubmissionFolder]:
         for each in found
         if not each.problem and (is_new(course, each) or _has_changed(course, each))
     ]
+
+
+def changed_lessons(course: Course) -> list[str]:
+    """Return the lessons that have changed since one of their submissions was graded."""
+    return [name for name in course.assignments() if _has_changed_since(course, name)]
+
+
+def _has_changed_since(course: Course, assignment: str) -> bool:
+    """Whether a result is of another version; it is read only if the lesson's files are newer."""
+    lesson = course.source_path(assignment), course.release_path(assignment)
+    if not all(path.exists() for path in lesson):
+        return False
+    when = max(path.stat().st_mtime_ns for path in lesson)
+    graded = course.folder('autograded', '', '').glob(f'*/{assignment}/{assignment}.ipynb')
+    older = [path for path in graded if path.stat().st_mtime_ns < when]
+    return bool(older) and are_of_another_lesson(course, assignment, older)
 
 
 def _has_changed(course: Course, found: SubmissionFolder) -> bool:
