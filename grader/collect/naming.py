@@ -162,7 +162,8 @@ class Naming:
         if stem not in self._known and not named:
             near = [name for name in self._known if name.casefold() in stem.casefold()]
             known = ', '.join(sorted(near or self._known))
-            raise UnclearOwner(f'named after no assignment: {EXPECTED}, with {known}')
+            way_out = 'rename it, in an unpacked copy of an archive, and collect that'
+            raise UnclearOwner(f'named after no assignment: {EXPECTED}, with {known}; {way_out}')
         assignment = named.assignment if named else stem
         for folder in reversed(folders):
             name = strip_archive_ending(folder)
