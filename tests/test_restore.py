@@ -146,7 +146,7 @@ CHANGED = {
 }
 HOW = {
     'missing': 'was missing: it was put back',
-    'changed': 'was changed: the original counts',
+    'changed': "was changed, or is of an earlier release: the lesson's counts",
     'there 2 times': 'was there 2 times: the original counts',
 }
 

@@ -100,7 +100,7 @@ def graded(language):
     )
     notebook = nbformat.v4.new_notebook(cells=[cell])
     notebook.metadata.my_robot_basics = {
-        'notes': ['the cell `a` was changed: the original counts'],
+        'notes': ["the cell `a` was changed, or is of an earlier release: the lesson's counts"],
         'title': '3 · A node that keeps talking',
         **language,
     }
@@ -121,7 +121,7 @@ def test_the_feedback_page_is_in_the_language_of_the_notebook():
         '✗ 还未通过',
         '预期：/kinematics/joint_states 的频率为 5.0 Hz；实际：10 s 内为 1.0 Hz（10 条消息）。',
         '定时器的周期以秒为单位，周期 = 1 / 频率',
-        '单元格 <code>a</code> 被改动了：以原来的为准',
+        '单元格 <code>a</code> 被改动了，或来自较早的版本：以本课的为准',
     ):
         assert said in html
     shown = html.partition('</style>')[2]

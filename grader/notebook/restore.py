@@ -132,7 +132,9 @@ def _restore(
         elif len(parts) > 1:
             notes.append(f'the cell `{name}` was there {len(parts)} times: the original counts')
         elif changed or parts[0].cell_type != cell.cell_type:
-            notes.append(f'the cell `{name}` was changed: the original counts')
+            notes.append(
+                f"the cell `{name}` was changed, or is of an earlier release: the lesson's counts"
+            )
     elif kind == 'setup' and changed:
         yield _from_student(parts[0])  # an answer may need what it defines
 
