@@ -50,7 +50,11 @@ def main(arguments: list[str] | None = None, *, course: 'Course | None' = None) 
 
             print(f'course: {printable(error)}', file=sys.stderr)
             return 1
-        except KeyboardInterrupt as interrupt:
+        except (KeyboardInterrupt, RuntimeError) as error:
+            # Python 3.11 wraps what is raised while it names a class's attributes, as in an import
+            interrupt = error.__cause__ if isinstance(error, RuntimeError) else error
+            if not isinstance(interrupt, KeyboardInterrupt):
+                raise
             kept = f'{interrupt}' or 'What was finished is kept'
             with contextlib.suppress(OSError):  # SIGHUP: the terminal is gone
                 print(f'\ncourse: stopped. {kept}; run it again to go on.', file=sys.stderr)

@@ -202,6 +202,21 @@ def test_a_stopped_run_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     assert 'run it again to go on' in capsys.readouterr().err
 
 
+def test_a_run_that_is_stopped_while_a_class_is_made_says_how_to_go_on(
+    tmp_path, capsys, monkeypatch
+):
+    class Named:
+        def __set_name__(self, *_):
+            raise KeyboardInterrupt  # Ctrl-C while a module with a dataclass is imported
+
+    def importing(*_, **__):
+        type('Made', (), {'it': Named()})
+
+    monkeypatch.setattr('grader.cli.begin_grade.find_submissions', importing)
+    assert main(['grade'], course=Course.at(tmp_path)) == 130
+    assert 'run it again to go on' in capsys.readouterr().err
+
+
 def test_all_verbs_work_one_after_another(tmp_path, capsys):
     course = make_course(tmp_path)
     assert main(['release', TOY], course=course) == 0
