@@ -206,6 +206,43 @@ def test_a_constructor_that_blocks_can_be_interrupted(lesson):
     assert lesson.value('alive(talker)') == 'True'
 
 
+WAITING = """class Waiting(Talker):
+    def __init__(self):
+        super().__init__()
+        print('waits', flush=True)
+        self.create_client(SetBool, '/nobody').wait_for_service({})"""
+
+
+def test_a_constructor_that_does_not_return_is_named_with_its_line(lesson):
+    lesson.run(f'from std_srvs.srv import SetBool\n{WAITING.format("")}')
+    cell = lesson.send('run(Waiting)')
+    assert lesson.wait_for(lambda: len(cell.displays) == 2)  # the first one is empty
+    said = ' '.join(cell.panel.split())
+    assert said.startswith('the constructor of Waiting has not returned for 5 s. Until it does, ')
+    assert 'press ■' in said
+    assert said.endswith(
+        "loops. line 6, in __init__: self.create_client(SetBool, '/nobody').wait_for_service()"
+    )
+    assert not cell.done
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    assert 'KeyboardInterrupt' in cell.error
+
+
+def test_a_constructor_that_returns_late_leaves_no_text_about_it(lesson):
+    lesson.run(f'from std_srvs.srv import SetBool\n{WAITING.format("timeout_sec=6.0")}')
+    cell = lesson.send('talker = run(Waiting)')
+    assert lesson.wait_for(lambda: cell.done)
+    texts = [display['data'].get('text/plain', '') for display in cell.displays]
+    assert [text.partition('\n')[0][:20] for text in texts[:4]] == [
+        '',
+        'the constructor of W',
+        '',
+        'Waiting: running',
+    ]
+    assert lesson.value('alive(talker)') == 'True'
+
+
 @pytest.fixture
 def count_participants(lesson):
     """A function that counts the participants of the lesson's kernel."""

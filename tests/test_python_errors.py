@@ -137,7 +137,13 @@ def error_of(code, **names):
         ),
         ('1.0 / Parameter("hz", value=5.0)', ', so take the value out of the parameter with .val'),
         ('def f():\n    await g()', ', so begin its function with async def'),
-        ('rclpy.Future().reachable', ', so take the answer out of the future with .result()'),
+        (
+            'rclpy.Future().reachable',
+            ', so take the answer out of the future with .result(), in the function that '
+            'add_done_callback calls: ',
+        ),
+        ('None.reachable', ', so use the answer in a function that add_done_callback calls: here'),
+        ('SolveIK.Response(elbow_up={"a": 1})', ', so give a number, and no text; a loop over a'),
         ('rclpy.Future().result.reachable', ', so call it, with parentheses behind its name'),
         ('[].name', ', so go through the list: for each in the_list'),
         ('Asker().judge()', ', so give a callback by its name, without parentheses'),
@@ -266,7 +272,13 @@ def test_the_error_of_a_second_rclpy_init_is_explained():
 def test_the_missing_result_of_a_future_is_recognised_by_the_students_line():
     said = "AttributeError: 'NoneType' object has no attribute 'reachable' (line 15, in receive: "
     assert 'add_done_callback' in hint_for_exception(f'{said}if future.result().reachable:)')
-    assert hint_for_exception(f'{said}if answer.reachable:)') == ''
+    assert 'here it is None' in hint_for_exception(f'{said}if answer.reachable:)')
+
+
+def test_none_as_an_empty_list_is_recognised_by_the_students_line():
+    said = "TypeError: 'NoneType' object is not iterable (line 16, in solve: "
+    assert ', so write []' in hint_for_exception(f'{said}response.elbow_up = None)')
+    assert hint_for_exception(f'{said}for angle in angles:)') == ''
 
 
 def test_a_future_that_was_cancelled_in_place_of_its_goal_is_explained():

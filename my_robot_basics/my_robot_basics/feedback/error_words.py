@@ -117,15 +117,6 @@ BY_WORDS = (
     Case(pattern=r'too many values .* in \w+:\)', to_do=', so go through .items() of a dict'),
     Case(pattern="'await' outside async function", to_do=', so begin its function with async def'),
     Case(
-        pattern=r"'NoneType' object has no attribute .*\.result\(\)",
-        to_do=', so let add_done_callback call this function: call_async returns before the '
-        'answer is there',
-    ),
-    Case(
-        pattern="'Future' object (?:has no attribute|is not subscriptable)",
-        to_do=', so take the answer out of the future with .result()',
-    ),
-    Case(
         pattern="'(?:function|method)' object has no attribute",
         to_do=', so call it, with parentheses behind its name',
     ),

@@ -8,6 +8,7 @@ from my_robot_basics.feedback.action_errors import OF_ACTIONS
 from my_robot_basics.feedback.call_errors import OF_CALLS
 from my_robot_basics.feedback.characters import in_ascii
 from my_robot_basics.feedback.error_words import BY_WORDS
+from my_robot_basics.feedback.future_errors import OF_FUTURES
 from my_robot_basics.feedback.hidden import student_text, without_marks
 from my_robot_basics.feedback.message_errors import OF_MESSAGES
 from my_robot_basics.feedback.missing_attributes import hint_for_missing
@@ -15,7 +16,10 @@ from my_robot_basics.feedback.moved_names import MOVED
 from my_robot_basics.feedback.syntax_errors import OF_SYNTAX
 from my_robot_basics.feedback.value_errors import OF_VALUES
 
-_ALL_CASES = OF_SYNTAX, OF_ACTIONS, OF_MESSAGES, BY_WORDS, MOVED, OF_CALLS, OF_VALUES
+_ALL_CASES = (
+    *(OF_SYNTAX, OF_ACTIONS, OF_FUTURES, OF_MESSAGES),
+    *(BY_WORDS, MOVED, OF_CALLS, OF_VALUES),
+)
 _NAME = re.compile(
     r'Invalid (?P<kind>node|topic|service|)[^:]*: \w+( name)? must not contain characters other '
     r"than [^:]*:\s+'(?P<name>.*?)'(?P<caret>\s+\^)"

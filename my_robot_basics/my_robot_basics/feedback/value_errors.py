@@ -48,9 +48,13 @@ OF_VALUES = (
         to_do=", so get its value: self.get_parameter('…').value",
     ),
     Case(
-        pattern='must be real number, not str',
+        pattern='must be real number, not str|cannot use a str to initialize an array',
         to_do=', so give a number, and no text; a loop over a dict, or unpacking it, gives its '
         'keys and not its values',
+    ),
+    Case(
+        pattern=r"'NoneType' object is not iterable \(line .* = None\)",
+        to_do=', so write [] for a field that is a list without values',
     ),
     Case(
         # a field was assigned to the class, which spoils all its objects

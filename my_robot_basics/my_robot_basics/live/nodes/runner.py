@@ -10,7 +10,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, uninstall_signal_handlers
 
-from my_robot_basics.live.nodes import answer_end, spinning
+from my_robot_basics.live.nodes import answer_end, slow_start, spinning
 from my_robot_basics.live.nodes.background import Background
 from my_robot_basics.live.nodes.destroying import destroy
 from my_robot_basics.live.nodes.naming import announce_name
@@ -74,7 +74,7 @@ def launch(
 
     node = NodeClass.__new__(NodeClass, *args, **kwargs)
     try:
-        with announce_name(node, on_name):
+        with announce_name(node, on_name), slow_start.told(NodeClass.__name__):
             returned = type(node).__init__(node, *args, **kwargs)
         if returned is not None:  # as Python requires when it calls __init__ itself
             raise TypeError(f"__init__() should return None, not '{type(returned).__name__}'")

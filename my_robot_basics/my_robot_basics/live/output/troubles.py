@@ -1,5 +1,6 @@
 """Record exceptions of a node's callbacks, and find callbacks that do not return."""
 
+import sys
 import sysconfig
 import time
 import traceback
@@ -108,6 +109,17 @@ def blocking_line(node_name: str) -> str:
     seen.look()
     lasting = seen.callbacks(at_least_sec=UNFINISHED_SEC)
     return next((each.line for each in lasting if node_name in each.holds and each.line), '')
+
+
+def line_in_thread(thread_id: int) -> str:
+    """Return the innermost line of the student's code that a thread executes; '' if there is none.
+
+    As in a traceback, it is the line of a call if a library executes that call.
+    """
+    frame = sys._current_frames().get(thread_id)
+    stack = traceback.extract_stack(frame) if frame is not None else []
+    own = [each for each in stack if not each.filename.startswith(_OF_A_LIBRARY)]
+    return _line(own[-1]) if own else ''
 
 
 def sleeping_line() -> tuple[int, str]:
