@@ -182,7 +182,7 @@ WRONG = [
         'rejects',
         r'compare both angles with their limits, radians\(90\) and radians\(120\)',
     ),
-    (NoLimits, 'rejects', 'reject a goal whose speed is not above 0'),
+    (NoLimits, 'rejects', 'without goal_callback in ActionServer'),
     (LimitsTheWrongWayRound, 'rejects', 'every comparison with NaN is False, so check for what'),
     (LooksBeforeItCounts, 'rejects', 'its callback raised IndexError.*; fix that first'),
     (LocksItself, 'rejects', 'and let a goal that you reject change nothing in the node'),

@@ -9,6 +9,7 @@ from my_robot_basics.checks.arm.arm_progress import bring_in_haste
 from my_robot_basics.checks.arm.watched_arm import Pose, WatchedArm, goal
 from my_robot_basics.feedback.errors import expect, fail
 
+_UNASKED = '; without goal_callback in ActionServer(…), rclpy accepts every goal'
 LIMITS_RAD = math.radians(90.0), math.radians(120.0)
 """The largest angle of joint1 and of joint2, in either direction."""
 SLOW_SPEED, SLOW_RAD = 0.005, 0.01
@@ -23,10 +24,11 @@ def expect_rejects(action: Action, *goals: MoveArm.Goal) -> None:
             if sent.is_accepted:
                 server.ends.cancel(sent)
                 shown = [round(each, 3) for each in wrong.position]
+                has_rejected_none = wrong is goals[0]
                 fail(
                     expected=f'the goal {shown} at {wrong.speed:.3g} rad/s to be rejected',
                     seen='it accepted',
-                    hint=_why_wrong(wrong),
+                    hint=_why_wrong(wrong) + (_UNASKED if has_rejected_none else ''),
                     cause=f'{_what_is_wrong(wrong)} is accepted',
                 )
 
