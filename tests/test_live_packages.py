@@ -77,6 +77,12 @@ WRONG = {
         {'package.xml': lambda text: text.replace('ament_python', 'ament_cmake')},
         'has the build type ament_cmake, expected ament_python',
     ),
+    'no build type': (
+        {
+            'package.xml': lambda text: text.replace('<build_type>ament_python</build_type>', ''),
+        },
+        'package.xml has no build type: write <export><build_type>ament_python</build_type>',
+    ),
     'no setup.py': ({'setup.py': None}, 'has no setup.py, which tells colcon'),
     'a slip in setup.py': ({'setup.py': 'setup(\n  x\n'}, 'line 1 of greeter/setup.py is not'),
 }

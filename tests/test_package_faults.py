@@ -127,7 +127,10 @@ def installed(tmp_path, entry):
     ('entry', 'module', 'words'),
     [
         ('greet = greeter.greet:main', NODE, ''),
-        ('greet = greeter.greet:mian', NODE, 'greeter/greet.py has no function mian'),
+        ('greet = greeter.greet:mian', NODE, 'has no function mian: write main in its place'),
+        ('greet = greeter.greet:Main', NODE, 'has no function Main: write main in its place'),
+        ('greet = greeter.greet:MAIN', NODE, 'has no function MAIN: write main in its place'),
+        ('greet = greeter.greet:go', NODE, 'has no function go: write `def go(args=None):` there'),
         ('greet = greeter.greet', NODE, 'names no function: write a colon and the function'),
         ('greet = greeter.greet.main', NODE, 'after the module, greeter.MODULE:main'),
         ('greet = greeter.greet:main', 'def main(:', 'greeter/greet.py is not valid Python (line'),

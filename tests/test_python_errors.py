@@ -142,6 +142,8 @@ def error_of(code, **names):
             ', so take the answer out of the future with .result(), in the function that '
             'add_done_callback calls: ',
         ),
+        ('None.accepted', ', so use the answer in a function that add_done_callback calls: here'),
+        ('None.status', ', so use the answer in a function that add_done_callback calls: here it'),
         ('None.reachable', ', so use the answer in a function that add_done_callback calls: here'),
         ('SolveIK.Response(elbow_up={"a": 1})', ', so give a number, and no text; a loop over a'),
         ('rclpy.Future().result.reachable', ', so call it, with parentheses behind its name'),
@@ -273,6 +275,12 @@ def test_the_missing_result_of_a_future_is_recognised_by_the_students_line():
     said = "AttributeError: 'NoneType' object has no attribute 'reachable' (line 15, in receive: "
     assert 'add_done_callback' in hint_for_exception(f'{said}if future.result().reachable:)')
     assert 'here it is None' in hint_for_exception(f'{said}if answer.reachable:)')
+
+
+def test_a_division_by_another_parameter_is_recognised_by_the_students_line():
+    said = 'ZeroDivisionError: float division by zero (line 16, in act: period = 1.0 / '
+    assert 'also use_sim_time' in hint_for_exception(f'{said}p.value)')
+    assert hint_for_exception(f'{said}length)') == ''
 
 
 def test_none_as_an_empty_list_is_recognised_by_the_students_line():

@@ -1,4 +1,4 @@
-"""Hints for exceptions of code that uses the answer of a service before it is there."""
+"""Hints for exceptions of code that uses the answer of a service or action before it is there."""
 
 from my_robot_basics.feedback.error_words import Case
 
@@ -10,7 +10,8 @@ OF_FUTURES = (
     ),
     Case(
         # a variable that got the result of a future too early, or of call(…, timeout_sec=…)
-        pattern=r"'NoneType' object has no attribute '(?:reachable|elbow_up|elbow_down)'",
+        pattern="'NoneType' object has no attribute "
+        "'(?:reachable|elbow_up|elbow_down|accepted|status)'",
         to_do=', so use the answer in a function that add_done_callback calls: here it is None, '
         'because the answer was not there yet',
     ),

@@ -53,6 +53,12 @@ OF_VALUES = (
         'keys and not its values',
     ),
     Case(
+        # the clock of checks is a parameter, too, and False as a number is 0
+        pattern=r'ZeroDivisionError: .*\(line .*/ \w+\.value',
+        to_do=', so look at the name of the parameter first: the callback gets each parameter '
+        'that is set, also use_sim_time, which is False',
+    ),
+    Case(
         pattern=r"'NoneType' object is not iterable \(line .* = None\)",
         to_do=', so write [] for a field that is a list without values',
     ),

@@ -1,6 +1,7 @@
 """Why `ros2 run` cannot use what a build has installed, in a sentence with a hint."""
 
 import ast
+import difflib
 import os
 import sys
 from collections.abc import Iterator
@@ -113,6 +114,13 @@ def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageF
     function = entry.attr.partition('.')[0]
     if function in set(_bound(tree)):
         return ''
+    functions = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    close = [name for name in functions if name.lower() == function.lower()]
+    for meant in [*close, *difflib.get_close_matches(function, functions)][:1]:
+        return (
+            f'entry_points of setup.py has {line!r}, and {names[0]} has no function {function}: '
+            f'write {meant} in its place'
+        )
     return (
         f'entry_points of setup.py has {line!r}, and {names[0]} has no function {function}: write '
         f'`def {function}(args=None):` there'

@@ -61,6 +61,11 @@ def _fault_in_manifest(package: str, file: Path) -> str:
             f'package.xml names the package {short(manifest.name)!r}, and its folder is '
             f'{package}/: write <name>{package}</name>'
         )
+    if not any(export.tagname == 'build_type' for export in manifest.exports):
+        return (
+            f'package.xml has no build type: write <export><build_type>{BUILD_TYPE}</build_type>'
+            '</export> into it, as its last part'
+        )
     build_type = manifest.get_build_type()
     if build_type != BUILD_TYPE:
         return (
