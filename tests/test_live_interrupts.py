@@ -2,7 +2,10 @@
 
 import sys
 import time
+from pathlib import Path
 
+import nbformat
+import psutil
 import pytest
 from live_lesson import SILENT, TALKER, Lesson, opened_lesson, stop_nodes_after
 
@@ -241,6 +244,27 @@ def test_a_constructor_that_returns_late_leaves_no_text_about_it(lesson):
         'Waiting: running',
     ]
     assert lesson.value('alive(talker)') == 'True'
+
+
+TWO_PROGRAMS = """ros2() {
+    if [ "$1" = run ]; then trap '' INT; touch "$ROS_WS/$BASHPID"; exec sleep 600; fi
+    sleep 0.2  # no node is found, so the cell waits
+}"""
+
+
+def test_the_two_programs_of_lesson_12_end_when_their_cell_is_interrupted(lesson, tmp_path):
+    (tmp_path / 'install').mkdir()
+    (tmp_path / 'install/setup.bash').write_text(TWO_PROGRAMS)
+    text = Path(__file__, '../../solutions/12_package/12_package.ipynb').resolve().read_text()
+    [source] = [c.source for c in nbformat.reads(text, 4).cells if c.id == 'processes']
+    lesson.run(f"import os; os.environ['ROS_WS'] = '{tmp_path}'")
+    cell = lesson.send(source)
+    assert lesson.wait_for(lambda: len([*tmp_path.glob('[0-9]*')]) == 2)
+    time.sleep(0.5)  # until it waits
+    lesson.manager.interrupt_kernel()
+    assert lesson.wait_for(lambda: cell.done)
+    pids = [int(path.name) for path in tmp_path.glob('[0-9]*')]
+    assert lesson.wait_for(lambda: not any(map(psutil.pid_exists, pids)), timeout_sec=5)
 
 
 @pytest.fixture
