@@ -127,7 +127,7 @@ class Grading:
 
     def start(
         self, found: SubmissionFolder, prepared: PreparedAssignment
-    ) -> 'Future[GradedSubmission]':
+    ) -> Future[GradedSubmission]:
         """Read and restore a submission; have it run and judged unless a result can be reused."""
         files = contents(found.folder)
         submission = unread_submission(
@@ -166,9 +166,7 @@ class Grading:
     def _earlier(self, submission: Submission, key: str) -> NotebookNode | None:
         return None if self.force else find_earlier_result(self.course, submission, key)
 
-    def store(
-        self, found: SubmissionFolder, work: 'Future[GradedSubmission]'
-    ) -> 'SubmissionOutcome':
+    def store(self, found: SubmissionFolder, work: Future[GradedSubmission]) -> SubmissionOutcome:
         """Wait until a submission is judged, and store it, or return why that can't be done."""
         stored, reason, seconds, reused = None, found.problem, None, False
         which = printable(f'{found.assignment} of {found.student_id}')

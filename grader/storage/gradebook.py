@@ -2,7 +2,6 @@
 
 import json
 import logging
-import shutil
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
-from my_robot_basics.session import package_files
 from nbformat import NotebookNode
 from nbgrader.api import Grade, Gradebook
 
@@ -19,7 +17,7 @@ from grader.common.files import write_whole
 from grader.common.text import printable
 from grader.course import Course
 from grader.notebook.restore import KEY
-from grader.notebook.submission import Submission, exchange_files, read_submission, submission_time
+from grader.notebook.submission import Submission, read_submission, submission_time
 from grader.storage.database import (
     make_database,
     open_database,
@@ -27,6 +25,7 @@ from grader.storage.database import (
     wait_until_free,
 )
 from grader.storage.held_scores import HeldScore, held_score, manual_scores
+from grader.storage.kept_files import keep_files
 from grader.storage.lateness import recount_late_penalties
 from grader.storage.lock import gradebook_lock
 from grader.storage.pipeline import (
@@ -89,7 +88,7 @@ def store(course: Course, submission: Submission, graded: NotebookNode) -> Store
                 by_hand = manual_scores(book, *whose) if former else {}
                 if by_hand or (former and former.pending):
                     note_rewritten(graded, journal.with_name(f'{whose[1]}.ipynb'), by_hand)
-                _keep_files(course, submission)
+                keep_files(course, submission)
                 # with ensure_ascii=False, text that can't be encoded fails here, not half-way
                 write_whole(journal, json.dumps(graded, ensure_ascii=False))
                 saved = _store_all(course, submission, graded)
@@ -167,25 +166,6 @@ def _store_all(course: Course, submission: Submission, graded: NotebookNode) -> 
     write_whole(folder / f'{assignment}.ipynb', nbformat.v4.writes(saved))
     _journal(course, submission).unlink()
     return saved
-
-
-def _keep_files(course: Course, submission: Submission) -> None:
-    """Copy the submitted files to the folder of the executed notebook, before scores are stored.
-
-    Raises OSError if that can't be done: then nothing is stored.
-    """
-    folder = course.folder('autograded', submission.student_id, submission.assignment)
-    beside = (*submission.extra_files, *exchange_files(submission))
-    files = {each.name: each.read_bytes() for each in beside}
-    files |= {
-        name: package_files.read_plain_file(f) for name, f in submission.package_files.items()
-    }
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in course.packages(submission.assignment):
-        shutil.rmtree(folder / name, ignore_errors=True)  # files of an earlier hand-in
-    for name, content in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        write_whole(folder / name, content)
 
 
 def _journal(course: Course, submission: Submission) -> Path:
