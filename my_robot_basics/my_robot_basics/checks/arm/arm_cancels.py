@@ -53,7 +53,7 @@ def expect_cancels(
             not sent.is_over(),
             expected=f'a move that takes {wanted_sec:.1f} s',
             seen='it over before it could be cancelled',
-            hint=(sent.is_over() and arm.why_too_soon(sent))
+            hint=(sent.is_over() and arm.why_ended(sent))
             or 'move the arm a little in each step, by speed × the time of the step',
             cause='the move is over too soon to be cancelled',
         )

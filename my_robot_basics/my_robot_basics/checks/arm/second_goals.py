@@ -94,7 +94,7 @@ def _expect_only_fast(
     A speed that is wrong before the second goal comes, at `asked_ns`, is the fault that other
     checks report. Only if the move is over by then, no goal can be refused (`is_refused`).
     """
-    why = arm.why_too_soon(moving)
+    why = arm.why_ended(moving)
     if not why and _was_too_fast(arm, moving, position, before_ns=asked_ns):
         if is_refused and arm.has_result(moving) and is_near(moving.result.position, position):
             return

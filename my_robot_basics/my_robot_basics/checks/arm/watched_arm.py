@@ -98,6 +98,10 @@ class WatchedArm:
         """The time from sending a goal to that wall time, in seconds of the arm's clock."""
         return (self.time.at_ns(wall_ns) - self.time.at_ns(sent.sent_ns)) / 1e9
 
+    def why_ended(self, sent: SentGoal) -> str:
+        """What to try if a goal ended long before it should have, if that is known; or ''."""
+        return self.server.log.raised(since_ns=sent.sent_ns) or self.why_too_soon(sent)
+
     def why_too_soon(self, sent: SentGoal) -> str:
         """What to try if feedback goes on after the goal's terminal status; or ''.
 
