@@ -85,9 +85,9 @@ def expect_refusals(service: Service, *targets: tuple[float, float]) -> None:
     Targets are (x, y) in metres, out of reach or NaN. Raises CheckFailed.
     """
     for x, y in targets:
-        response = service.call(request(x, y))
-        left_over = why_left_over(service, x, y) if response.elbow_up else ''
         what = 'NaN' if math.isnan(x + y) else 'a target out of reach'
+        response = service.call(request(x, y), what=what)
+        left_over = why_left_over(service, x, y) if response.elbow_up else ''
         expect(
             not response.reachable,
             expected=f'reachable to be False for ({x:g}, {y:g})',

@@ -48,13 +48,15 @@ class Service:
     type: type
     """The service's class, such as `arm_interfaces.srv.SolveIK`."""
 
-    def call(self, request: Any) -> Any:
+    def call(self, request: Any, *, what: str = '') -> Any:
         """Send a request; return the response. Raises CheckFailed as `call_all` does."""
-        return self.call_all(request)[0]
+        return self.call_all(request, what=what)[0]
 
-    def call_all(self, *requests: Any) -> list[Any]:
+    def call_all(self, *requests: Any, what: str = '') -> list[Any]:
         """Send all requests at once, before any is answered; return their responses in order.
 
+        `what` is in them, for the reason if there is no answer: all that students read of a
+        request of a hidden part.
         The server may answer in any order. Raises CheckFailed if there is no server, one of
         another type, or more than one; also if a response does not come in ANSWER_SEC of free
         time, with the reason: the callback raised, returned no response, does not return, or the
@@ -67,8 +69,7 @@ class Service:
             watcher.spin_until(client.service_is_ready, timeout_sec=SERVER_SEC)
             asked = [client.call_async(request) for request in requests]
             if not wait_for_all(watcher, asked, gives_up=lambda: bool(raised.hint())):
-                answered = sum(future.done() for future in asked)
-                self._fail_unanswered(watcher, server, raised, answered, len(asked))
+                self._fail_unanswered(watcher, server, raised, asked, what)
             raised.expect_none()
             return [future.result() for future in asked]
 
@@ -107,8 +108,14 @@ class Service:
         return next(iter(found))
 
     def _fail_unanswered(
-        self, watcher: Watcher, server: str, raised: CallbackErrors, answered: int, asked: int
+        self,
+        watcher: Watcher,
+        server: str,
+        raised: CallbackErrors,
+        futures: Sequence[Future],
+        what: str,
     ) -> NoReturn:
+        answered, asked = sum(future.done() for future in futures), len(futures)
         seen = f'{answered} of {asked}' if answered else 'none'
         if not raised.hint():
             late = f'{answered} of {asked} in {ANSWER_SEC:g} s'
@@ -117,7 +124,9 @@ class Service:
             expected='an answer to each request' if asked > 1 else 'an answer',
             seen=seen,
             hint=self._why_unanswered(watcher, server, raised),
-            cause=f'{self.name} does not answer',
+            cause=f'{self.name} does not answer {what}'
+            if what
+            else f'{self.name} does not answer',
         )
 
     def _why_unanswered(self, watcher: Watcher, server: str, raised: CallbackErrors) -> str:
