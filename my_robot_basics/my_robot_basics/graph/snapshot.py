@@ -65,14 +65,28 @@ class GraphSnapshot:
             who = student_text(', '.join(dict.fromkeys(senders)))
             if why := what_stopped(senders):
                 return f'{who} has a publisher there and sends nothing, because {why}'
+            if self._has_subscription(senders):
+                return (
+                    f'{who} has a publisher there and sends nothing, so see that it spins, that '
+                    'the callback of its subscription, or of its timer, calls publish(…), and that'
+                    ' no callback raises (an `except` may hide that), or waits and so keeps the '
+                    'node busy'
+                )
             return (
                 f'{who} has a publisher there and sends nothing, so see that it spins, that its '
                 'timer is created (with a period in seconds, and the name of a method, without '
-                'parentheses), that this method calls publish(…), and that no callback raises, or '
-                'waits and so keeps the node busy'
+                'parentheses), that this method calls publish(…), and that no callback raises (an '
+                '`except` may hide that), or waits and so keeps the node busy'
             )
         others = self.subscriptions(topic_name)
         return self._why_none(topic_name, self.publisher_names, 'create_publisher', others)
+
+    def _has_subscription(self, node_names: Collection[str]) -> bool:
+        return any(
+            {*nodes} & {*node_names}
+            for topic_name, nodes in self.subscription_names.items()
+            if topic_name not in PLUMBING
+        )
 
     def why_no_subscription(self, topic_name: str) -> str:
         """What to try when a topic has no subscription: one clause."""
