@@ -1,12 +1,16 @@
 """IK in the log: what counts as an answer, read from /rosout as at grading."""
 
+import itertools
+import time
 from math import atan2, degrees, hypot
 
 import pytest
 from geometry_msgs.msg import Point
 from my_robot_basics.checks import CheckFailed, rosout
+from my_robot_basics.checks.nodes import sleepers
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 from nodes.running import imported, running
+from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 
 from my_robot_basics import live
@@ -353,5 +357,46 @@ def test_one_log_call_for_two_levels_fails_with_its_cause():
             ask(log, TOO_FAR)
             with pytest.raises(CheckFailed, match=words):
                 log.expect_warning(free_sec=1.0)
+    finally:
+        live.stop()
+
+
+class Sleeps(IKSolver):
+    def solve(self, point):
+        time.sleep(point.z)
+        super().solve(point)
+
+
+def test_a_callback_that_sleeps_is_not_waited_for_even_if_no_time_is_free(monkeypatch):
+    monkeypatch.setattr(sleepers, 'free_turns', lambda free_sec: itertools.count())
+    live.run(Sleeps)
+    named = r'a callback sleeps in line \d+ \(time\.sleep\(point\.z\)\), so the answer comes too l'
+    try:
+        with rosout('ik_solver_node') as log:
+            ask(log, Point(x=1.2, y=0.8, z=sleepers.PATIENT_SEC + 0.5 * sleepers.ASLEEP_SEC))
+            log.expect_angles(ANGLES)
+            ask(log, Point(x=1.2, y=0.8, z=60.0))
+            with pytest.raises(CheckFailed, match=named):
+                log.expect_angles(ANGLES)
+    finally:
+        live.stop()
+
+
+class Quiet(IKSolver):
+    def __init__(self):
+        super().__init__()
+        self.get_logger().set_level(LoggingSeverity.ERROR)
+
+
+def test_a_logger_that_drops_a_level_is_named():
+    live.run(Quiet)
+    try:
+        with rosout('ik_solver_node') as log:
+            ask(log, TARGET)
+            with pytest.raises(CheckFailed, match=r'drops INFO records.*LoggingSeverity\.INFO'):
+                log.expect_angles(ANGLES, free_sec=0.5)
+            ask(log, TOO_FAR)
+            with pytest.raises(CheckFailed, match=r'drops WARN records.*LoggingSeverity\.WARN'):
+                log.expect_warning(free_sec=0.5)
     finally:
         live.stop()

@@ -13,7 +13,9 @@ import pytest
 from builtin_interfaces.msg import Time
 from my_robot_basics.checks import CheckFailed, student
 from my_robot_basics.exchange import node_troubles, responder, values, wire
+from my_robot_basics.feedback.rclpy_names import OWN_ATTRIBUTES
 from my_robot_basics.graph.stop_reasons import what_raised, what_stopped
+from my_robot_basics.live.output import overwritten
 from my_robot_basics.live.patches import harmless_errors
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -253,6 +255,45 @@ def test_an_exception_in_a_callback_is_reported_until_its_node_is_restarted(monk
     assert node_troubles.last_raised('/raises') == ''
     assert not node_troubles.has_raised_since('/raises', 0)
     live.stop()
+
+
+class OwnSubscriptions(Node):
+    def __init__(self):
+        super().__init__('own')
+        self._subscriptions = {}
+
+
+class OwnLogger(Node):
+    def __init__(self):
+        super().__init__('own')
+        self._logger = None
+        self.create_timer(0.02, self.tick)
+
+    def tick(self):
+        self.get_logger().info('tick')
+
+
+@pytest.mark.starts
+def test_an_attribute_of_node_that_a_node_has_overwritten_is_named(monkeypatch):
+    monkeypatch.delenv('MY_ROBOT_BASICS_ROOM', raising=False)
+    live.run(Node, 'own')
+    assert what_stopped(['/own']) == ''
+    live.run(OwnSubscriptions, key='own')
+    assert what_stopped(['/own']).startswith('its class assigns to `self._subscriptions`: ')
+    live.run(OwnLogger, key='own')
+    live.wait_until(lambda: node_troubles.last_raised('/own'))
+    raised = r"its callback raised AttributeError: .*'info' .*, because its class assigns to `self"
+    assert re.match(raised, what_stopped(['/own']))
+    live.stop()
+
+
+def test_only_names_of_rclpys_attributes_are_believed(monkeypatch):
+    told = '_clock'
+    monkeypatch.setattr(node_troubles, 'reply_value', lambda question: told)
+    assert node_troubles.overwritten_attribute('/a') == '_clock'
+    told = 'what a target was'
+    assert node_troubles.overwritten_attribute('/a') == ''
+    assert {*OWN_ATTRIBUTES} == {*overwritten._KINDS}
 
 
 @pytest.mark.starts

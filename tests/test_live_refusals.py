@@ -48,6 +48,42 @@ def test_another_error_in_a_constructor_is_raised_unchanged():
     stop()
 
 
+class OwnClock(Node):
+    def __init__(self):
+        super().__init__('own_clock')
+        self._clock = 0.0
+        self.timer = self.create_timer(0.2, print)
+
+
+class OwnParameters(Node):
+    def __init__(self):
+        super().__init__('own_parameters')
+        self._parameters = {'rate_hz': 5.0}
+        self.declare_parameter('rate_hz', 5.0)
+
+
+class OwnClockAndMistake(Node):
+    def __init__(self):
+        super().__init__('own_clock_and_mistake')
+        self._clock = 0.0
+        raise ZeroDivisionError
+
+
+@pytest.mark.parametrize(
+    ('NodeClass', 'attribute'), [(OwnClock, '_clock'), (OwnParameters, '_parameters')]
+)
+def test_an_attribute_of_node_that_a_constructor_overwrites_is_named(NodeClass, attribute):
+    with pytest.raises(NotRunnable, match=f'{NodeClass.__name__} to leave `self.{attribute}` al'):
+        run(NodeClass)
+    stop()
+
+
+def test_an_error_that_no_overwritten_attribute_causes_is_raised_unchanged():
+    with pytest.raises(ZeroDivisionError):
+        run(OwnClockAndMistake)
+    stop()
+
+
 def test_a_constructor_that_returns_a_value_raises_the_error_of_python():
     with pytest.raises(TypeError, match=r"__init__\(\) should return None, not 'Returns'"):
         run(Returns)

@@ -1,11 +1,15 @@
 """Errors in a node of the notebook, as the notebook's process reports them.
 
-They tell students where to look; the verdict depends only on what the check observes over DDS.
+They tell students where to look; the verdict depends only on what the check observes over DDS. A
+check waits no longer for a callback that `sleeps_on`: that can only cost points.
 """
+
+from typing import Any
 
 from my_robot_basics.exchange import wire
 from my_robot_basics.exchange.asking import reply_value
 from my_robot_basics.feedback.errors import shorten, shorten_exception
+from my_robot_basics.feedback.rclpy_names import OWN_ATTRIBUTES
 
 _NONE = '', '', ''
 
@@ -41,11 +45,26 @@ def blocking_line(node_name: str) -> str:
     return shorten(body) if isinstance(body, str) else ''
 
 
+def sleeps_on(node_name: str, seconds: float) -> tuple[int, str]:
+    """Return the line at which a callback that blocks that node sleeps for `seconds`; or 0, ''."""
+    return _line(reply_value(wire.request(op='sleeps_on', name=node_name, args=(seconds,))))
+
+
+def overwritten_attribute(node_name: str) -> str:
+    """Return an attribute of rclpy's Node in which that node has a value of its own, or ''."""
+    body = reply_value(wire.request(op='overwritten', name=node_name))
+    return str(body) if body in OWN_ATTRIBUTES else ''
+
+
+def logger_level(node_name: str) -> int:
+    """Return the least severity that the node's logger logs, 0 if the notebook reports none."""
+    body = reply_value(wire.request(op='level', name=node_name))
+    return body if type(body) is int else 0
+
+
 def sleeping_line() -> tuple[int, str]:
     """Return the line at which a callback sleeps most of the time, number and text; or 0, ''."""
-    body = reply_value(wire.request(op='sleeping', name=wire.THREADS))
-    is_told = isinstance(body, tuple) and [type(part) for part in body] == [int, str]
-    return (body[0], shorten(body[1], 120)) if is_told else (0, '')
+    return _line(reply_value(wire.request(op='sleeping', name=wire.THREADS)))
 
 
 def not_awaited() -> tuple[str, int, str]:
@@ -66,3 +85,8 @@ def how_answer_ended() -> tuple[str, str, str]:
     body = reply_value(wire.request(op='ended', name=wire.THREADS))
     is_told = isinstance(body, tuple) and [type(text) for text in body] == [str] * 3
     return (shorten(body[0], 60), shorten(body[1], 60), shorten(body[2], 60)) if is_told else _NONE
+
+
+def _line(body: Any) -> tuple[int, str]:
+    is_told = isinstance(body, tuple) and [type(part) for part in body] == [int, str]
+    return (body[0], shorten(body[1], 120)) if is_told else (0, '')

@@ -98,10 +98,28 @@ def _blocking_line(node_name: str) -> str:
     return troubles.blocking_line(node_name) if troubles else ''
 
 
+def _overwritten_attribute(node_name: str) -> str:
+    """Return an attribute of rclpy's Node that a node of this process has overwritten, or ''."""
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
+    return troubles.overwritten_attribute(node_name) if troubles else ''
+
+
+def _logger_level(node_name: str) -> int:
+    """Return the least severity that a node's logger logs; 0 if that is unknown."""
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
+    return troubles.logger_level(node_name) if troubles else 0
+
+
 def _sleeping_line(_: str) -> tuple[int, str]:
     """Return the line at which a callback sleeps most of the time; this takes half a second."""
     troubles = sys.modules.get('my_robot_basics.live.output.troubles')
     return troubles.sleeping_line() if troubles else (0, '')
+
+
+def _sleeps_on(node_name: str, *args: float) -> tuple[int, str]:
+    """Return the line at which a callback that blocks the node sleeps; it takes these seconds."""
+    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
+    return troubles.sleeps_on(node_name, *args) if troubles else (0, '')
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
@@ -144,6 +162,9 @@ _OTHERS: dict[str, Callable[..., object]] = {
     'unfinished': _blocking_line,
     'not_awaited': _not_awaited,
     'sleeping': _sleeping_line,
+    'sleeps_on': _sleeps_on,
+    'overwritten': _overwritten_attribute,
+    'level': _logger_level,
     'ended': _how_answer_ended,
     'clock': _set_use_sim_time,
     'package': _ask_package,

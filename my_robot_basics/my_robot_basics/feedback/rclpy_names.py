@@ -10,6 +10,11 @@ OWN_METHODS = (
     '|create_(?:publisher|subscription|client|service|timer)|destroy_node'
 )
 """Methods of Node that a student may override by accident."""
+OWN_ATTRIBUTES = (
+    *('_publishers', '_subscriptions', '_clients', '_services', '_timers', '_parameters'),
+    *('_descriptors', '_clock', '_logger', '_context', '_default_callback_group'),
+)
+"""Attributes in which Node keeps what it needs; a student's class may have one of that name."""
 CLASSES = (
     'Node|Publisher|Client|Service|Subscription|Timer|Clock|Time|Duration|Future|RcutilsLogger'
     '|Parameter|Action(?:Client|Server)|(?:Client|Server)GoalHandle|Random'

@@ -10,6 +10,8 @@ from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 _GETS_TOO_LITTLE = re.compile(r'\(\) missing \d+ required positional arguments?: ([^(]*)$')
 """What Python says if a function needs more than rclpy gives it: no line of the student's calls
 it, so no line is named behind it."""
+_OF_AN_ATTRIBUTE = 'AttributeError', 'TypeError'
+"""What rclpy raises if an attribute of its own holds something else."""
 _NO_STAMP = re.compile(r"'(?:Time|function|method)' object has no attribute 'sec'")
 """What Python says of a stamp that is a Time, or a to_msg without its parentheses."""
 
@@ -21,6 +23,8 @@ def what_raised(node_names: Iterable[str]) -> str:
     if not said:
         return ''
     why = f'its callback raised {student_exception(said)}'
+    if said.startswith(_OF_AN_ATTRIBUTE) and (mine := what_is_overwritten(name)):
+        return f'{why}, because {mine}'
     if said.endswith('object is not callable') and not hint_for_exception(said):
         why += ', so give a method by its name, without parentheses'
     if found := _GETS_TOO_LITTLE.search(said):
@@ -44,7 +48,8 @@ def what_stopped(node_names: Iterable[str]) -> str:
     names = sorted(set(node_names))
     if raised := what_raised(names):
         return raised
-    return what_has_not_returned(names) or what_ended_a_thread()
+    why = what_has_not_returned(names) or what_ended_a_thread()
+    return why or next(filter(None, map(what_is_overwritten, names)), '')
 
 
 def what_has_not_returned(node_names: Iterable[str]) -> str:
@@ -52,6 +57,17 @@ def what_has_not_returned(node_names: Iterable[str]) -> str:
     lines = map(node_troubles.blocking_line, sorted(set(node_names)))
     said = next(filter(None, lines), '')
     return f'its callback has not returned ({student_text(said)})' if said else ''
+
+
+def what_is_overwritten(node_name: str) -> str:
+    """A clause about one of Node's own attributes that the node has overwritten, or ''."""
+    attribute = node_troubles.overwritten_attribute(node_name)
+    return (
+        f'its class assigns to `self.{attribute}`: `Node` already has an attribute of this name, '
+        'and uses it, so choose another name'
+        if attribute
+        else ''
+    )
 
 
 def what_ended_a_thread() -> str:

@@ -5,10 +5,9 @@ from typing import Self
 
 from my_robot_basics.checks.nodes.node_log import NodeLog
 from my_robot_basics.checks.nodes.repeated_answers import RepeatedAnswers
+from my_robot_basics.checks.nodes.unlogged import why_unlogged
 from my_robot_basics.checks.values import angles, answers, pairing
-from my_robot_basics.checks.values.angles import HOW, IN_REACH
 from my_robot_basics.feedback.errors import fail
-from my_robot_basics.graph.stop_reasons import what_stopped
 
 EXTRA_SEC = 0.3
 """How long after a warning angles may still come, in seconds."""
@@ -17,8 +16,6 @@ WARNED_SEC = 0.1
 ANSWER_SEC, ONCE_MORE_SEC = 3.0, 1.5
 """How long to wait for the answer to a target, and to a target that is sent a second time, in
 seconds of free time."""
-WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
-INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
 
 
 def rosout(node_name: str) -> 'Log':
@@ -41,6 +38,7 @@ class Log(NodeLog):
         super().__init__(node_name)
         self._forms = answers.Forms()
         self._repeated = RepeatedAnswers()
+        self._has_warned = False
         self._answer: list[float] = []
         """The angles of the last target in reach."""
 
@@ -97,7 +95,9 @@ class Log(NodeLog):
             fail(
                 expected=f'{listed} for {what} in the INFO log of {self.node_name}',
                 seen=self.shown('INFO'),
-                hint=self.why_stopped() or self._why_late(is_answered) or self._why_other(wanted),
+                hint=why_unlogged(self, 'INFO')
+                or self._why_late(is_answered)
+                or self._why_other(wanted),
                 cause='the INFO log lacks the angles of a target in reach',
             )
         before = self.count('WARN') if may_lag else 0
@@ -106,7 +106,7 @@ class Log(NodeLog):
             fail(
                 expected=f'no warning from {self.node_name} for {what}, which is in reach',
                 seen=self.shown('WARN'),
-                hint=WARN_ONLY,
+                hint=angles.WARN_ONLY,
                 cause='there is a warning for a target in reach',
             )
         self._raised.expect_none()
@@ -131,11 +131,12 @@ class Log(NodeLog):
             fail(
                 expected=f'a warning in the log of {self.node_name}',
                 seen=self.shown('WARN'),
-                hint=self._why_unwarned(),
+                hint=why_unlogged(self, 'WARN') or self._why_unwarned(),
                 cause='there is no warning for a target out of reach',
             )
         levels = [record.level for record in self.records]
         count = levels[: levels.index('WARN')].count('INFO')
+        self._has_warned = True
 
         def has_angles(log: Self) -> bool:
             texts = log.texts('INFO')
@@ -177,17 +178,14 @@ class Log(NodeLog):
         if self.has('INFO') or not self.has('WARN'):
             return angles.what_to_try(wanted, self.numbers())
         elsewhere = not angles.missing(wanted, self.numbers('WARN'), angles.ROUNDED_DEG)
-        return INFO_FOR_ANGLES if elsewhere else WARN_ONLY + IN_REACH
+        return angles.INFO_FOR_ANGLES if elsewhere else angles.WARN_ONLY + angles.IN_REACH
 
     def _why_unwarned(self) -> str:
-        why = what_stopped([self.node_name])
-        if why and ('ValueError' not in why or 'severity' in why):
-            return f'{why}; fix that first'
         if self.records:
-            return 'a target out of reach needs the level WARN: self.get_logger().warning(…)'
+            return angles.WARN_EACH if self._has_warned else angles.NEEDS_WARN
         if self.asked_again:
             return angles.AGAIN
-        return f'catch ValueError each time and log it with self.get_logger().warning(…) {HOW}'
+        return angles.CATCH
 
     def _expect_no_table(self) -> None:
         count = len(set(self.numbers()))

@@ -1,7 +1,7 @@
 """The log of one node: its records on /rosout since a given time."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -9,14 +9,14 @@ from rcl_interfaces.msg import Log as LogMessage
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from my_robot_basics.checks.nodes.node_names import why_absent
+from my_robot_basics.checks.nodes.sleepers import PatientWait
 from my_robot_basics.checks.recordings.callbacks import CallbackErrors
 from my_robot_basics.checks.topics.topics import Topic
 from my_robot_basics.checks.values import answers
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.message_info import with_info
-from my_robot_basics.graph.not_running import why_not_running
-from my_robot_basics.graph.stop_reasons import what_has_not_returned, what_stopped
 from my_robot_basics.graph.watcher import Watcher
 
 LEVELS = {10: 'DEBUG', 20: 'INFO', 30: 'WARN', 40: 'ERROR', 50: 'FATAL'}
@@ -51,6 +51,7 @@ class NodeLog:
         self.node_name = f'/{node_name.strip("/")}'
         self._received: list[tuple[int, Record]] = []
         self._watcher = Watcher()
+        self.wait = PatientWait(self._watcher, self.node_name)
         self._since_ns = self._characters = 0
         self._publishers: dict[str, Publisher] = {}
         self._asked: tuple[str, Any] | None = None
@@ -109,8 +110,8 @@ class NodeLog:
         return self._watcher.spin_until(lambda: done(self), timeout_sec=timeout_sec)
 
     def wait_for_answer(self, done: Callable[[Self], bool], *, free_sec: float) -> bool:
-        """Spin until `done(log)` or for `free_sec` of free time; return whether it is done."""
-        return self._watcher.spin_until_free(lambda: done(self), free_sec=free_sec)
+        """Spin until `done(log)`, as `PatientWait` does; return whether it is done."""
+        return self.wait.until(lambda: done(self), free_sec=free_sec)
 
     def _meet(self) -> None:
         node = self._watcher.node
@@ -130,7 +131,7 @@ class NodeLog:
             fail(
                 expected=f'a node {self.node_name}',
                 seen=', '.join(others) or 'no node',
-                hint=self._why_absent(others),
+                hint=why_absent(self.node_name, others),
             )
 
     def expect_node(self) -> None:
@@ -164,20 +165,6 @@ class NodeLog:
             hint='log the solutions of each target, in a line or a few',
             cause=f'over {MOST_CHARACTERS:,} characters for one target',
         )
-
-    def _why_absent(self, others: Sequence[str]) -> str:
-        if not others:
-            return why_not_running()
-        name = self.node_name.strip('/')
-        if any(other.endswith(self.node_name) for other in others):
-            return f'the name {name} is right, so leave the namespace out of super().__init__(…)'
-        return f"if that is yours, write super().__init__('{name}'), letter for letter"
-
-    def why_stopped(self) -> str:
-        """A clause on a callback that has not returned, or raised before any INFO; or ''."""
-        names = [self.node_name]
-        why = what_has_not_returned(names) if self.has('INFO') else what_stopped(names)
-        return f'{why}; fix that first' if why else ''
 
     def texts(self, level: str) -> list[str]:
         """The texts of a level since the mark, in order."""

@@ -12,7 +12,14 @@ ONE_LATE = 'each answer is one target late: use the point that the callback is g
 EARLIER = 'these are the angles of an earlier target: use the point that the callback is given'
 AGAIN = 'answer each target, also one that is equal to the target before'
 HOW = '(print(…) does not reach the log, nor does a logger of another name)'
-
+WARN_ONLY = 'warn only when inverse_kinematics(x, y) raises ValueError'
+INFO_FOR_ANGLES = 'log angles with self.get_logger().info(…), and ' + WARN_ONLY
+NEEDS_WARN = 'a target out of reach needs the level WARN: self.get_logger().warning(…)'
+WARN_EACH = (
+    'log a warning for each target out of reach, whether it is too far away or too near: another'
+    ' one had a warning'
+)
+CATCH = f'catch ValueError each time and log it with self.get_logger().warning(…) {HOW}'
 IN_REACH = (
     '; for a target in reach it does not, so give it x and y alone, and keep other lines out of'
     ' that `try`'

@@ -59,6 +59,14 @@ def no_node_yet(NodeClass: type[Node]) -> str:
     )
 
 
+def has_overwritten(NodeClass: type[Node], attribute: str) -> str:
+    """Return the message about a constructor that gave one of Node's attributes a value."""
+    return (
+        f'expected {NodeClass.__name__} to leave `self.{attribute}` alone, saw it assigned: '
+        '`Node` already has an attribute of this name, and uses it, so choose another name'
+    )
+
+
 def is_made(node: Node) -> bool:
     """Whether Node's constructor has created the node."""
     return getattr(node, 'handle', None) is not None

@@ -14,8 +14,14 @@ from my_robot_basics.live.nodes import answer_end, slow_start, spinning
 from my_robot_basics.live.nodes.background import Background
 from my_robot_basics.live.nodes.destroying import destroy
 from my_robot_basics.live.nodes.naming import announce_name
-from my_robot_basics.live.nodes.refusals import expect_runnable, is_made, no_node_yet
+from my_robot_basics.live.nodes.refusals import (
+    expect_runnable,
+    has_overwritten,
+    is_made,
+    no_node_yet,
+)
 from my_robot_basics.live.output import notebook
+from my_robot_basics.live.output.overwritten import spoils_rclpy
 from my_robot_basics.live.output.panel import STOPPED, NodePanel, Panel
 from my_robot_basics.live.packages import commands, executables, node_file
 from my_robot_basics.live.patches import interrupting, rclpy_patches
@@ -88,12 +94,15 @@ def launch(
         return None
     except BaseException as error:
         too_soon = isinstance(error, AttributeError) and error.obj is node and not is_made(node)
+        attribute = spoils_rclpy(node, error) if is_made(node) else ''
         if is_made(node):
             destroy(node)  # else the publishers that it has created would stay on the graph
         panel.show('its constructor failed')
         panel.close('its constructor failed')
         if too_soon:
             raise NotRunnable(no_node_yet(NodeClass)) from None
+        if attribute:
+            raise NotRunnable(has_overwritten(NodeClass, attribute)) from error
         raise
     panel.show('running')
     with _lock:

@@ -9,6 +9,7 @@ from typing import Any
 
 import rclpy
 from rclpy.client import Client
+from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.service import Service
 
@@ -16,6 +17,7 @@ from my_robot_basics.exchange.wire import THREADS
 from my_robot_basics.exchange.wrong_fields import wrong_field
 from my_robot_basics.live.output.wrong_arguments import how_to_make
 from my_robot_basics.session.errors import without_signatures
+from my_robot_basics.session.neighbours import nodes_here
 
 UNFINISHED_SEC = 0.5
 _last: dict[str, str] = {}
@@ -122,11 +124,35 @@ def line_in_thread(thread_id: int) -> str:
     return _line(own[-1]) if own else ''
 
 
+def overwritten_attribute(node_name: str) -> str:
+    """Return an attribute of rclpy's Node in which a node of this process has its own, or ''."""
+    from my_robot_basics.live.output import overwritten  # few answers need it
+
+    return next(map(overwritten.overwritten_attribute, _nodes_of(node_name)), '')
+
+
+def logger_level(node_name: str) -> int:
+    """Return the least severity that the logger of a node of this process logs; 0 if unknown."""
+    levels = (int(node.get_logger().get_effective_level()) for node in _nodes_of(node_name))
+    return next(levels, 0)
+
+
 def sleeping_line() -> tuple[int, str]:
     """Return the line at which callbacks sleep most of the time: its number and text; or 0, ''."""
     from my_robot_basics.live.output import sleeping  # few answers need it
 
     return sleeping.sleeping_line()
+
+
+def sleeps_on(node_name: str, seconds: float) -> tuple[int, str]:
+    """Return the line at which a callback blocks the node and sleeps for `seconds`; or 0, ''."""
+    from my_robot_basics.live.output import sleeping  # few answers need it
+
+    return sleeping.sleeps_on(node_name, seconds)
+
+
+def _nodes_of(node_name: str) -> list[Node]:
+    return [node for node in nodes_here() if node.get_fully_qualified_name() == node_name]
 
 
 def _frames(error: BaseException) -> list[traceback.FrameSummary]:
