@@ -99,7 +99,7 @@ class WaitingClient:
         return raised or (
             'publish when the answer is there, however late it comes, in the function that '
             'add_done_callback calls (call and spin_until_future_complete get no answer inside a '
-            'callback)'
+            'callback, and an `except` may hide what that function raises)'
         )
 
     def expect_counts(
