@@ -5,16 +5,12 @@ import sysconfig
 import time
 import traceback
 from pathlib import Path
-from typing import Any
 
 import rclpy
-from rclpy.client import Client
 from rclpy.node import Node
-from rclpy.publisher import Publisher
-from rclpy.service import Service
 
 from my_robot_basics.exchange.wire import THREADS
-from my_robot_basics.exchange.wrong_fields import wrong_field
+from my_robot_basics.live.output import failed_calls
 from my_robot_basics.live.output.wrong_arguments import how_to_make
 from my_robot_basics.session.errors import without_signatures
 from my_robot_basics.session.neighbours import nodes_here
@@ -50,8 +46,8 @@ def remember(node_name: str, error: BaseException) -> None:
     place = _line((own or frames)[-1]) if frames else ''
     what = without_signatures(what)
     told = f'{what} ({place})' if place else what
-    _fields[node_name] = _unpublished(error) or ('', how_to_make(error))
-    if node_name != THREADS and (service_name := _service(error)):
+    _fields[node_name] = failed_calls.unpublished_field(error) or ('', how_to_make(error))
+    if node_name != THREADS and (service_name := failed_calls.service_name(error)):
         _of_services[node_name, service_name] = told
     # these two last: a check in another thread that sees them asks for the others at once
     _last[node_name] = told
@@ -167,37 +163,6 @@ def _line(frame: traceback.FrameSummary) -> str:
     line_number, function_name, code = frame.lineno, frame.name, frame.line
     where = f'line {line_number}, in {function_name}: {code}'
     return ', '.join(filter(None, (_file_name(frame.filename), where)))
-
-
-def _unpublished(error: BaseException) -> tuple[str, str] | None:
-    """Return the field that could not be serialized, and its type; None for other errors."""
-    for frame, _ in traceback.walk_tb(error.__traceback__):
-        message, type_ = _sent(frame.f_locals)
-        if type_ is not None and isinstance(message, type_):
-            path, _, type_name = wrong_field(message, type_)
-            return (path, type_name) if path else None
-    return None
-
-
-def _sent(names: dict[str, Any]) -> tuple[Any, Any]:
-    """Return what one of rclpy's functions with these local variables sends, and its type."""
-    match names.get('self'):
-        case Publisher():
-            return names.get('msg'), names['self'].msg_type
-        case Service():
-            return names.get('response'), names['self'].srv_type.Response
-        case Client():
-            return names.get('request'), names['self'].srv_type.Request
-    return None, None
-
-
-def _service(error: BaseException) -> str:
-    """Return the service whose callback raised, from the frame of rclpy that called it; or ''."""
-    for frame, _ in traceback.walk_tb(error.__traceback__):
-        service = frame.f_locals.get('srv')
-        if frame.f_code.co_name == '_execute' and isinstance(service, Service):
-            return service.service_name
-    return ''
 
 
 def _file_name(filename: str) -> str:
