@@ -1,11 +1,15 @@
 """Compare an answer's type with the expected one, and describe the difference."""
 
+import re
+
 from my_robot_basics.exchange import values
 from my_robot_basics.feedback.errors import fail, shorten
 from my_robot_basics.feedback.hidden import student_text
 
 _CLASS_OF_A_MESSAGE = 'Metaclass_'
 """rosidl's metaclass of a message class is called this, plus the name of that class."""
+_ITERATOR = re.compile(r' = <\w+ object ')
+"""In the text about a field of a wrong type: it holds a generator, a map, a zip, …"""
 
 
 def check_type(
@@ -24,7 +28,9 @@ def check_type(
 
 def what_is_unsupported(body: str, wanted: type | tuple[type, ...] | None) -> tuple[str, str]:
     """Return what a result that cannot be transmitted is, and a hint; `body` names its type."""
-    if values.WRONG_FIELD in body:
+    if values.WRONG_FIELD in body and _ITERATOR.search(body):
+        hint = 'write list(…) around it: a generator, map or zip is no list'
+    elif values.WRONG_FIELD in body:
         hint = 'give each field a value of the type that get_fields_and_field_types() names'
     elif body.startswith(_CLASS_OF_A_MESSAGE):
         # any class may be called so, also after an input that is hidden

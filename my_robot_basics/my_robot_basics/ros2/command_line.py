@@ -71,6 +71,8 @@ def parse(text: str, *, package: str, executable: str) -> CommandLine:
         raise BadCommandLine(f'a full-width {strange!r}', hint)
     if '\n' in text:
         raise BadCommandLine('several lines', 'write one line, or end each but the last with \\')
+    if text.startswith('$ '):
+        raise BadCommandLine('a $ in front', 'leave out the prompt of the terminal')
     if expanded := [character for character in text if character in _EXPANDED]:
         raise BadCommandLine(f'a {expanded[0]}', 'write what you mean in full: no shell reads it')
     words = _words(text)

@@ -16,6 +16,7 @@ MOST_CHARACTERS = 300
 _CONSTANT_NAME = re.compile('[A-Z](?:_?[A-Z0-9])*')
 """The names that rosidl accepts; its own pattern takes hours for some long names."""
 _FIELD_NAME = re.compile('[a-z](?:_?[a-z0-9])*')
+_PLACE = re.compile(r'\{\w+\}')
 _MESSAGE_TYPE = re.compile('([a-z][a-z0-9_]*/)?[A-Z][A-Za-z0-9]*[a-z][A-Za-z0-9]*')
 
 
@@ -99,6 +100,8 @@ def _why(type_name: str, rest: str, error: Exception) -> str:
     """Return the cause of rosidl's error, as a clause."""
     if isinstance(error, BadLine):
         return str(error)
+    if _PLACE.search(f'{type_name} {rest}'):
+        return 'put an f before the quotation mark: Python then puts the value there'
     name, _, default = rest.partition(' ')
     about_name = '' if '=' in rest else _about_name(name)
     if cause := _about_form(type_name, rest) or _about_type(type_name) or about_name:
