@@ -6,6 +6,7 @@ from html import unescape
 
 import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
+from my_robot_basics.feedback.unanswered import say_unanswered
 from nbformat.v4 import new_code_cell, new_output
 
 from grader.common import parsing
@@ -86,6 +87,14 @@ def test_the_error_of_a_cell_is_shown_in_the_students_language(course):
     notebook.metadata[KEY] = {'language': 'zh_CN'}
     html = feedback(course, 'bea', notebook, reasons=UNDEFINED, notes=[STOPPED])
     assert html.count('你的单元格 <code>double</code> 停止了：NameError: no such thing') == 2
+
+
+def test_what_is_missing_is_shown_in_the_students_language(course):
+    notebook = answered(course, RIGHT)
+    notebook.metadata[KEY] = {'language': 'zh_CN'}
+    reason, _ = say_unanswered('double')
+    html = feedback(course, 'bea', notebook, reasons={'double-hidden': reason})
+    assert '预期：<code>double</code> 的答案；实际：还没有。' in html
 
 
 def test_the_error_of_a_cell_is_only_a_note_if_no_points_are_missing(course):

@@ -13,7 +13,8 @@ there, the failure of a check is a part of the exercise."""
 def say_unanswered(name: str) -> tuple[str, str]:
     """Return the sentence for an exercise of that name, and the hint at its end."""
     hint = f'write it into the answer cell `{name}`, where it says YOUR CODE HERE'
-    return f'expected an answer to `{name}`, saw none yet: {hint}', hint
+    expected, seen = f'an answer to `{name}`', 'none yet'  # a page shows each by itself
+    return f'expected {expected}, saw {seen}: {hint}', hint
 
 
 def say_stopped(name: str, error: str) -> str:

@@ -73,7 +73,7 @@ class Sentences:
         ]
         self._templates = sorted(
             (each for each in templates if each.literals != ('', ' ', '')),
-            key=lambda each: each.letters,
+            key=lambda each: (each.letters, sum(map(len, each.literals))),  # signs: `{name}`
             reverse=True,
         )
         first = (Template.of(each, '').literals for each in (REASON, CLAUSES))
