@@ -6,6 +6,7 @@ from html import unescape
 
 import pytest
 from course_maker import PIXEL, TOY, answered, executed, released_course, submit
+from my_robot_basics.feedback.hidden import PLACE
 from my_robot_basics.feedback.unanswered import say_unanswered
 from nbformat.v4 import new_code_cell, new_output
 
@@ -139,6 +140,21 @@ def test_advice_with_colons_is_separated_from_the_rest_of_a_reason():
         'seen': 'E: no',
         'hint': hint,
     }
+
+
+def test_a_failure_at_grading_is_tried_in_a_cell_of_ones_own(course):
+    """The check in the lesson would only say once more that it is checked at grading."""
+    said = new_output('stream', name='stdout', text='checked at grading\n')
+    reasons = {'double-hidden': f'{PLACE}double(-1) has to be negative'}
+    html = feedback(
+        course,
+        'ada',
+        answered(course, RIGHT),
+        reasons=reasons,
+        outputs={'double-hidden': [said]},
+    )
+    assert 'does not test this: try it in a cell of your own.</td>' in html
+    assert '<pre tabindex="0" class="text">checked at grading</pre>' not in html
 
 
 def test_the_open_part_of_a_check_is_shown_and_its_hidden_test_is_not(course):

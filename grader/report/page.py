@@ -8,6 +8,7 @@ import bleach
 import nbformat
 from jinja2 import Template
 from markupsafe import Markup, escape
+from my_robot_basics.feedback.hidden import PLACE
 from my_robot_basics.language.catalogues import ENGLISH, languages, read_translations
 from my_robot_basics.language.speaking import LOCALE, in_language, language_of, sentences
 from nbconvert.filters import markdown2html
@@ -120,6 +121,7 @@ def _template(language: str, *, is_plain: bool) -> Template:
             'said': partial(in_language, language),
         },
         values={
+            'at_grading': PLACE,
             '_': partial(put_markup, known),
             'language_code': language.replace('_', '-'),
             'code_style': Markup(_CODE.get_style_defs('pre')),

@@ -19,6 +19,7 @@ from grader.report.shown_outputs import in_page_language
 
 MAX_TEXT_CHARACTERS = 5_000
 """How much of one output is shown."""
+AT_GRADING = 'checked at grading'  # what a check that is hidden as a whole prints
 
 _REASON = '(?s)expected (?P<expected>.+?), saw (?P<seen>.+): (?P<hint>{hint})'
 _BASE64 = re.compile(r'[A-Za-z0-9+/=\s]+')
@@ -156,9 +157,10 @@ def _outputs(
     For a check, which has a `reason`, errors, points and a repetition of the reason are skipped.
     """
     for output in cell.get('outputs', ()):
-        if output.output_type in ('error', 'execute_result') and reason is not None:
-            continue
-        if reason and output.get('text', '').strip() == reason:
+        if reason is not None and (
+            output.output_type in ('error', 'execute_result')
+            or output.get('text', '').strip() in {reason, AT_GRADING} - {''}
+        ):
             continue
         shown = in_page_language(output, language)
         if output.output_type == 'error':
