@@ -6,6 +6,11 @@ _AT = r'SyntaxError:\sinvalid\ssyntax\s\(line\s\d+:\s[^\'"#]*'
 """The text before a sign that is neither in a text nor in a comment; see `validate.trouble`."""
 
 OF_SYNTAX = (
+    Case(
+        pattern=r'SyntaxError: invalid syntax[^(]*\(line \d+: ask\(\w+, guess=[^\'"]+\)\)',
+        to_do=", so write a text in quotes, as in guess='/station', and commas between the values "
+        'of a list',
+    ),
     Case(pattern=rf'{_AT}(?:=<|=>)', to_do=', so write <= or >=, with the equals sign last'),
     Case(
         pattern=rf'{_AT}(?:&&|\|\||!\s*[\w(])',

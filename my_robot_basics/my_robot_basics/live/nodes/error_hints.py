@@ -25,7 +25,10 @@ def _after_cell(result: Any) -> None:
     from my_robot_basics.feedback.python_errors import hint_for_exception
 
     said = without_signatures(cells_run.error_of(cells_run.current()))
-    if why := hint_for_exception(said):
+    line = ''
+    if isinstance(error, SyntaxError) and error.text:  # often only the line shows the cause
+        line = ' '.join(['', '(line', f'{error.lineno}:', f'{error.text.strip()})'])
+    if why := hint_for_exception(said + line):
         raised = shorten(said)
         told = f'this cell raised `{raised}`'
         tell(told + why, in_one=False)
