@@ -97,7 +97,8 @@ def _lost(evidence: ServiceEvidence) -> str:
         return ''
     return (
         f'; no server works on a request, and one of {" and ".join(names)} has no response: it'
-        ' was sent while there was no server (service_is_ready() tells), or its callback raised'
+        ' was sent while there was no server (then service_is_ready() is False), or its callback'
+        ' raised'
     )
 
 

@@ -15,7 +15,7 @@ from my_robot_basics.graph.watcher import Watcher
 
 WAITS_FOR_LOST = (
     'a request that is sent while there is no server never gets an answer, so let no later target '
-    'wait for it: look at service_is_ready() before you ask'
+    'wait for it: call call_async only if service_is_ready() returns True'
 )
 
 _SLEEP = re.compile(r'\bsleep\w*\(')
@@ -47,8 +47,9 @@ def waits_for_server(name: str) -> str:
     """The advice for a node that has not sent a request, and blocks."""
     return (
         f'it waits inside a callback, for `{name}` to be there or for the answer to an earlier '
-        'request, and no other callback runs meanwhile; look at service_is_ready(), which returns '
-        'at once, and ask with call_async and add_done_callback'
+        'request, and no other callback runs meanwhile; write '
+        '`if self.client.service_is_ready():`, which waits for nothing, and ask there with '
+        'call_async and add_done_callback'
     )
 
 

@@ -19,7 +19,8 @@ def examine(evidence: ServiceEvidence) -> Iterator[Finding]:
             seen=f'it has waited in wait_for_service ({each.line}) for at least'
             f' {int(each.seconds)} s, and no other callback of {" and ".join(each.holds)} runs'
             ' meanwhile',
-            fix='look at service_is_ready(), which returns at once, and ask only if it is true',
+            fix='do not wait: call service_is_ready(), which returns at once, and ask only if it'
+            ' is True',
             code='if self.client.service_is_ready():',
             broken=tuple(end for end in evidence.clients if end.node_name == each.node_name),
         )
