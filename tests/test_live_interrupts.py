@@ -252,19 +252,39 @@ TWO_PROGRAMS = """ros2() {
 }"""
 
 
-def test_the_two_programs_of_lesson_12_end_when_their_cell_is_interrupted(lesson, tmp_path):
-    (tmp_path / 'install').mkdir()
-    (tmp_path / 'install/setup.bash').write_text(TWO_PROGRAMS)
-    text = Path(__file__, '../../solutions/12_package/12_package.ipynb').resolve().read_text()
-    [source] = [c.source for c in nbformat.reads(text, 4).cells if c.id == 'processes']
-    lesson.run(f"import os; os.environ['ROS_WS'] = '{tmp_path}'")
-    cell = lesson.send(source)
+@pytest.fixture
+def start_both(lesson, tmp_path):
+    """A function that sends the cell `processes` of lesson 12, for which `ros2` is a function."""
+
+    def send(ros2):
+        (tmp_path / 'install').mkdir()
+        (tmp_path / 'install/setup.bash').write_text(ros2)
+        text = Path(__file__, '../../solutions/12_package/12_package.ipynb').resolve().read_text()
+        [source] = [c.source for c in nbformat.reads(text, 4).cells if c.id == 'processes']
+        lesson.run(f"import os; os.environ['ROS_WS'] = '{tmp_path}'")
+        return lesson.send(source)
+
+    return send
+
+
+def test_the_two_programs_of_lesson_12_end_when_their_cell_is_interrupted(
+    lesson, start_both, tmp_path
+):
+    cell = start_both(TWO_PROGRAMS)
     assert lesson.wait_for(lambda: len([*tmp_path.glob('[0-9]*')]) == 2)
     time.sleep(0.5)  # until it waits
     lesson.manager.interrupt_kernel()
     assert lesson.wait_for(lambda: cell.done)
     pids = [int(path.name) for path in tmp_path.glob('[0-9]*')]
     assert lesson.wait_for(lambda: not any(map(psutil.pid_exists, pids)), timeout_sec=5)
+
+
+def test_the_cell_of_the_two_programs_does_not_wait_forever_for_one_that_has_died(
+    lesson, start_both
+):
+    cell = start_both('ros2() { [ "$1" != run ]; }')
+    assert lesson.wait_for(lambda: cell.done)
+    assert 'after kill %1' in cell.stdout
 
 
 @pytest.fixture
