@@ -8,7 +8,7 @@ import pytest
 from my_robot_basics.doctor import inside
 from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.live.nodes import exercise
-from my_robot_basics.live.output import troubles
+from my_robot_basics.live.output import failed_calls, troubles
 from my_robot_basics.live.output.panel import Panel
 from my_robot_basics.two_link_kinematics import inverse_kinematics
 from rclpy.node import Node
@@ -20,7 +20,7 @@ from my_robot_basics import live
 
 @pytest.mark.parametrize('forget', [lambda: troubles.forget('/a'), troubles.forget_all])
 def test_an_error_and_an_unpublished_field_are_forgotten_with_their_node(monkeypatch, forget):
-    monkeypatch.setattr(troubles, '_unpublished', lambda error: ('header.stamp', 'Time'))
+    monkeypatch.setattr(failed_calls, 'unpublished_field', lambda error: ('header.stamp', 'Time'))
     troubles.remember('/a', TypeError('no stamp'))
     assert (troubles.last_raised('/a'), troubles.unpublished_field('/a')[0]) == (
         'TypeError: no stamp',
@@ -38,7 +38,7 @@ def test_an_exception_is_told_only_after_its_unpublished_field_is_known(monkeypa
         known.append((troubles.last_raised('/a'), troubles.last_raised_ns('/a')))
         return '', ''
 
-    monkeypatch.setattr(troubles, '_unpublished', look)
+    monkeypatch.setattr(failed_calls, 'unpublished_field', look)
     troubles.remember('/a', TypeError('no stamp'))
     assert known == [('', 0)]
     troubles.forget('/a')
