@@ -69,3 +69,17 @@ def test_child_loggers_of_a_new_node_still_log_after_the_old_logger_is_collected
         gc.collect()
         second.logger.info('here')
         assert watcher.spin_until(lambda: 'here' in heard, timeout_sec=5.0)
+
+
+class OwnLogger(Node):
+    def __init__(self):
+        super().__init__('own_logger')
+        self._logger = None
+
+
+def test_a_node_that_has_overwritten_its_logger_leaves_the_graph(run):
+    speaker = run(Speaker)
+    run(OwnLogger)
+    live.stop(OwnLogger)
+    assert graph().nodes() == ('/speaker',)
+    assert speaker.logger.name == 'speaker.voice'

@@ -29,6 +29,7 @@ def remember_child_loggers() -> None:
 
 def unregister_child_loggers(node: Node) -> None:
     """Remove a node's child loggers, and their children, from `/rosout`."""
+    logger_name = node.handle.logger_name()  # a student's class may have overwritten its logger
     for child, name in list(_nodes.items()):
-        if name == node.get_logger().name:
+        if name == logger_name:
             child.__del__()  # a second call does nothing
