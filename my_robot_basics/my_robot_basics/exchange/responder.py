@@ -62,64 +62,21 @@ def _has_endpoint(topic_name: str, end: str = '', type_name: str = '') -> bool:
     )
 
 
-def _last_raised(node_name: str) -> str:
-    """Return the last exception in a callback of a node that `live` spins, or ''."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.last_raised(node_name) if troubles else ''
+def _ask_live(
+    module: str, function: str, otherwise: object, *, takes_name: bool = True
+) -> Callable[..., object]:
+    """Return what answers by a function of a module of `live`; `otherwise` if it is not imported.
 
+    `takes_name`: the function takes the request's name.
+    """
 
-def _last_raised_ns(node_name: str) -> int:
-    """Return when a callback of a node that `live` spins has raised last (monotonic); or 0."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.last_raised_ns(node_name) if troubles else 0
+    def ask(name: str, *args: Any) -> object:
+        imported = sys.modules.get(f'my_robot_basics.live.{module}')
+        if imported is None:
+            return otherwise
+        return getattr(imported, function)(*([name] if takes_name else []), *args)
 
-
-def _unpublished_field(node_name: str) -> tuple[str, str]:
-    """Return the field that kept a node from publishing, and its type."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.unpublished_field(node_name) if troubles else ('', '')
-
-
-def _how_answer_ended(_: str) -> tuple[str, str, str]:
-    """Return the class of the answer if its node was ended, what took its place, and its name."""
-    answer_end = sys.modules.get('my_robot_basics.live.nodes.answer_end')
-    return answer_end.how_answer_ended() if answer_end else ('', '', '')
-
-
-def _not_awaited(_: str) -> tuple[str, int, str]:
-    """Return the coroutine that the answer has called without `await`, and the line of it."""
-    unawaited = sys.modules.get('my_robot_basics.live.nodes.unawaited')
-    return unawaited.first() if unawaited else ('', 0, '')
-
-
-def _blocking_line(node_name: str) -> str:
-    """Return the line at which a callback blocks a node that `live` spins, or ''."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.blocking_line(node_name) if troubles else ''
-
-
-def _overwritten_attribute(node_name: str) -> str:
-    """Return an attribute of rclpy's Node that a node of this process has overwritten, or ''."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.overwritten_attribute(node_name) if troubles else ''
-
-
-def _logger_level(node_name: str) -> int:
-    """Return the least severity that a node's logger logs; 0 if that is unknown."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.logger_level(node_name) if troubles else 0
-
-
-def _sleeping_line(_: str) -> tuple[int, str]:
-    """Return the line at which a callback sleeps most of the time; this takes half a second."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.sleeping_line() if troubles else (0, '')
-
-
-def _sleeps_on(node_name: str, *args: float) -> tuple[int, str]:
-    """Return the line at which a callback that blocks the node sleeps; it takes these seconds."""
-    troubles = sys.modules.get('my_robot_basics.live.output.troubles')
-    return troubles.sleeps_on(node_name, *args) if troubles else (0, '')
+    return ask
 
 
 def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
@@ -142,32 +99,27 @@ def _set_use_sim_time(node_name: str, value: bool) -> bool | None:
     return None
 
 
-def _ask_package(package: str, verb: str, *args: Any) -> dict[str, Any] | None:
-    """Ask `live` about a package that it has built, or to act on it; None without `live`."""
-    packages = sys.modules.get('my_robot_basics.live.packages.packages')
-    return packages.answer_check(package, verb, *args) if packages else None
-
-
 def _settled_nodes(_: str, *args: float) -> list[str] | None:
     """Return the nodes of this process if nothing in it can create another endpoint, else None."""
     return settled.settled_nodes(*args)
 
 
+_TROUBLES = 'output.troubles'
 _OTHERS: dict[str, Callable[..., object]] = {
     'endpoint': _has_endpoint,
     'settled': _settled_nodes,
-    'trouble': _last_raised,
-    'raised': _last_raised_ns,
-    'field': _unpublished_field,
-    'unfinished': _blocking_line,
-    'not_awaited': _not_awaited,
-    'sleeping': _sleeping_line,
-    'sleeps_on': _sleeps_on,
-    'overwritten': _overwritten_attribute,
-    'level': _logger_level,
-    'ended': _how_answer_ended,
     'clock': _set_use_sim_time,
-    'package': _ask_package,
+    'trouble': _ask_live(_TROUBLES, 'last_raised', ''),
+    'raised': _ask_live(_TROUBLES, 'last_raised_ns', 0),
+    'field': _ask_live(_TROUBLES, 'unpublished_field', ('', '')),
+    'unfinished': _ask_live(_TROUBLES, 'blocking_line', ''),
+    'sleeping': _ask_live(_TROUBLES, 'sleeping_line', (0, ''), takes_name=False),
+    'sleeps_on': _ask_live(_TROUBLES, 'sleeps_on', (0, '')),
+    'overwritten': _ask_live(_TROUBLES, 'overwritten_attribute', ''),
+    'level': _ask_live(_TROUBLES, 'logger_level', 0),
+    'not_awaited': _ask_live('nodes.unawaited', 'first', ('', 0, ''), takes_name=False),
+    'ended': _ask_live('nodes.answer_end', 'how_answer_ended', ('', '', ''), takes_name=False),
+    'package': _ask_live('packages.packages', 'answer_check', None),
 }
 
 
