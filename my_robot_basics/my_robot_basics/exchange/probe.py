@@ -18,25 +18,32 @@ TOPIC_NAME = '/_probe'
 QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TIMEOUT_SEC = 20.0
 
-_announced: list = []
+_announced: list[Node] = []
 
 
 def announce() -> None:
     """Publish one transient-local message, which is available until `remove_announcement`."""
-    context, node = _node('_probe_student_room')
+    node = _node('_probe_student_room', _new_context())
     node.create_publisher(Empty, TOPIC_NAME, QOS).publish(Empty())
-    _announced.append((context, node))
+    _announced.append(node)
 
 
 def remove_announcement() -> None:
     """Remove the announcement, its node and its context."""
     while _announced:
-        _end(*_announced.pop())
+        node = _announced.pop()
+        node.destroy_node()
+        node.context.try_shutdown()
 
 
-def receive(timeout_sec: float = TIMEOUT_SEC) -> None:
-    """Wait for the other room's message; raises TimeoutError if it does not arrive in time."""
-    context, node = _node('_probe_test_room')
+def receive(timeout_sec: float = TIMEOUT_SEC, *, context: Context | None = None) -> None:
+    """Wait for the other room's message; raises TimeoutError if it does not arrive in time.
+
+    The node is in `context`; without one, it gets a context of its own, which ends with it.
+    """
+    owned = context is None
+    context = context or _new_context()
+    node = _node('_probe_test_room', context)
     received = threading.Event()
     node.create_subscription(Empty, TOPIC_NAME, lambda _: received.set(), QOS)
     executor = SingleThreadedExecutor(context=context)
@@ -49,19 +56,19 @@ def receive(timeout_sec: float = TIMEOUT_SEC) -> None:
             executor.spin_once(timeout_sec=0.1)
     finally:
         executor.shutdown()
-        _end(context, node)
+        node.destroy_node()
+        if owned:
+            context.try_shutdown()
 
 
-def _node(name: str) -> tuple[Context, Node]:
+def _new_context() -> Context:
     classroom.enter()
     context = Context()
     rclpy.init(context=context)
-    node = rclpy.create_node(
+    return context
+
+
+def _node(name: str, context: Context) -> Node:
+    return rclpy.create_node(
         name, context=context, start_parameter_services=False, enable_rosout=False
     )
-    return context, node
-
-
-def _end(context: Context, node: Node) -> None:
-    node.destroy_node()
-    context.try_shutdown()
