@@ -4,7 +4,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from made_evidence import infinite
-from my_robot_basics.doctor.rules import qos
+from my_robot_basics.doctor.rules import endpoints
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session import classroom
 from rclpy.duration import Duration
@@ -57,7 +57,7 @@ def test_the_qos_diagnosis_agrees_with_whether_messages_arrive(both_ends, offere
             lambda: all(len(look_up('/qos')) == 1 for look_up in look_ups), timeout_sec=10.0
         )
         (offer,), (wish,) = (look_up('/qos') for look_up in look_ups)
-        gaps = qos.incompatible_policies(offer.qos_profile, wish.qos_profile)
+        gaps = endpoints.incompatible_policies(offer.qos_profile, wish.qos_profile)
 
         def arrives():
             publisher.publish(String())
@@ -77,7 +77,7 @@ def test_the_qos_diagnosis_agrees_with_whether_messages_arrive(both_ends, offere
 @given(offered=PROFILES, asked=PROFILES)
 def test_the_fix_for_any_profile_is_compatible_with_the_offer(offered, asked):
     given_, wanted = infinite(QoSProfile(**offered)), infinite(QoSProfile(**asked))
-    gaps = qos.incompatible_policies(given_, wanted)
+    gaps = endpoints.incompatible_policies(given_, wanted)
     if gaps:
-        fixed = eval(qos._compatible_profile(given_, wanted), {**globals()})
-        assert qos.incompatible_policies(given_, infinite(fixed)) == {}
+        fixed = eval(endpoints._compatible_profile(given_, wanted), {**globals()})
+        assert endpoints.incompatible_policies(given_, infinite(fixed)) == {}

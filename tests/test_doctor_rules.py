@@ -1,12 +1,16 @@
 """What a rule on topics concludes from evidence, without a graph."""
 
 import dataclasses
-from importlib import resources
+from collections.abc import Iterator
+from importlib import import_module
+from inspect import isfunction
+from pkgutil import iter_modules
+from typing import get_type_hints
 
 import pytest
 from made_evidence import DEADLOCK, SILENT, TOPIC, end, healthy, replaced
 from my_robot_basics.doctor import action_rules, picture, remaps, report, rules, service_rules
-from my_robot_basics.doctor.evidence import NodeState
+from my_robot_basics.doctor.evidence import Finding, NodeState
 from my_robot_basics.doctor.remaps import remaps_in_command
 from my_robot_basics.doctor.rules import judge
 
@@ -155,17 +159,19 @@ def test_an_empty_domain_is_reported_with_a_hint_at_other_domains():
     assert not any('--domains' in finding.fix for finding in judge(looked).findings)
 
 
-TABLES = [rules, service_rules, action_rules]
-
-
-@pytest.mark.parametrize('table', TABLES, ids=lambda table: table.__name__)
-def test_every_rule_is_in_its_table(table):
-    folder = resources.files(table)
-    files = {f.name.removesuffix('.py') for f in folder.iterdir() if f.name.endswith('.py')}
-    tabled = [rule.__module__.rpartition('.') for rule in table.RULES]
-    assert {name for package, _, name in tabled if package == table.__name__} == (
-        files - {'__init__'}
-    )
+def test_every_rule_is_in_its_table():
+    tabled = {rule for table in (rules, service_rules, action_rules) for rule in table.RULES}
+    homes = [
+        import_module(f'{rules.__name__}.{each.name}') for each in iter_modules(rules.__path__)
+    ]
+    written = {
+        member
+        for home in (*homes, service_rules, action_rules)
+        for name, member in vars(home).items()
+        if isfunction(member) and member.__module__ == home.__name__ and not name.startswith('_')
+        if get_type_hints(member)['return'] == Iterator[Finding]
+    }
+    assert tabled == written
 
 
 @pytest.mark.parametrize(

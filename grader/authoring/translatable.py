@@ -49,7 +49,7 @@ MODULES = {
     'doctor': [
         f'my_robot_basics/my_robot_basics/doctor/{modules}.py'
         for modules in (
-            *('inside', 'report', 'client_types', 'rules/*', 'service_rules/*', 'action_rules/*'),
+            *('inside', 'report', 'client_types', 'rules/*', 'service_rules', 'action_rules'),
         )
     ],
     'quiz': ['my_robot_basics/my_robot_basics/quiz/*.py'],

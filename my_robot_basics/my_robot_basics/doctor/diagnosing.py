@@ -15,7 +15,7 @@ from my_robot_basics.doctor import (
     service_rules,
 )
 from my_robot_basics.doctor.evidence import Diagnosis, Endpoint
-from my_robot_basics.doctor.rules.similar_name import are_similar
+from my_robot_basics.doctor.rules.names import are_similar
 from my_robot_basics.graph import graphs
 from my_robot_basics.graph.snapshot import GraphSnapshot
 from my_robot_basics.graph.watcher import Watcher

@@ -1,4 +1,4 @@
-"""Rules about the faults of a topic, one in each file: `examine(evidence)` yields findings.
+"""Rules about the faults of a topic: each is a function that yields findings of the evidence.
 
 `RULES` is in the order of likelihood: a cause comes before the consequence that it explains.
 """
@@ -6,46 +6,27 @@
 from collections.abc import Callable, Iterable
 
 from my_robot_basics.doctor.evidence import Diagnosis, Evidence, Finding
-from my_robot_basics.doctor.rules import (
-    blocks_itself,
-    degrees,
-    discovery_range,
-    late_joiner,
-    no_clock,
-    no_publisher,
-    no_subscription,
-    not_installed,
-    not_returning,
-    not_spinning,
-    other_domain,
-    qos,
-    remapped,
-    short_queue,
-    silent_publisher,
-    similar_name,
-    stamps,
-    types_differ,
-)
+from my_robot_basics.doctor.rules import callbacks, endpoints, messages, names
 
 RULES: tuple[Callable[[Evidence], Iterable[Finding]], ...] = (
-    remapped.examine,
-    similar_name.examine,
-    discovery_range.examine,
-    other_domain.examine,
-    no_publisher.examine,
-    no_subscription.examine,
-    types_differ.examine,
-    not_installed.examine,
-    qos.examine,
-    no_clock.examine,
-    blocks_itself.examine,
-    not_returning.examine,
-    not_spinning.examine,
-    silent_publisher.examine,
-    late_joiner.examine,
-    short_queue.examine,
-    stamps.examine,
-    degrees.examine,
+    names.remapped,
+    names.similar_name,
+    endpoints.discovery_range,
+    endpoints.other_domain,
+    endpoints.no_publisher,
+    endpoints.no_subscription,
+    endpoints.different_types,
+    endpoints.not_installed,
+    endpoints.qos,
+    callbacks.no_clock,
+    callbacks.blocks_itself,
+    callbacks.not_returning,
+    callbacks.not_spinning,
+    callbacks.silent_publisher,
+    messages.late_joiner,
+    messages.short_queue,
+    messages.stamps,
+    messages.degrees,
 )
 
 

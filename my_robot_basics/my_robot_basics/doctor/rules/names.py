@@ -1,4 +1,4 @@
-"""An end is missing, and another one has a similar name, which may be misspelled."""
+"""Rules about names: an end of the graph that has another name than the one that was asked for."""
 
 import difflib
 from collections.abc import Iterator
@@ -6,11 +6,41 @@ from collections.abc import Iterator
 from my_robot_basics.doctor import code
 from my_robot_basics.doctor.evidence import VERBS, Endpoint, Finding, GraphEvidence, Kind
 
+
+def remapped(evidence: GraphEvidence) -> Iterator[Finding]:
+    """A remapping rule gave an end another name when its node was started.
+
+    Show the command without the remapping rule that renamed the end.
+    """
+    for kind in evidence.NEEDED:
+        if evidence.ends(kind):
+            continue
+        for remap in evidence.remaps:
+            moved = [
+                end for end in evidence.endpoints if (end.kind, end.name) == (kind, remap.instead)
+            ]
+            if remap.name != evidence.name or not moved:
+                continue
+            yield Finding(
+                title='remapped',
+                expected=f'a {kind} {evidence.OF} {evidence.name}',
+                seen=f'{moved[0].node_name} was started with -r {remap.name}:={remap.instead},'
+                ' and uses that name instead',
+                fix='stop it, and start it without the rule',
+                code=f'$ {remap.command}',
+                broken=(moved[0],),
+                missing=kind,
+            )
+
+
 CUTOFF = 0.75
 
 
-def examine(evidence: GraphEvidence) -> Iterator[Finding]:
-    """Show the line to edit; if no node uses the given name, show a similar one to diagnose."""
+def similar_name(evidence: GraphEvidence) -> Iterator[Finding]:
+    """An end is missing, and another one has a similar name, which may be misspelled.
+
+    Show the line to edit; if no node uses the given name, show a similar one to diagnose.
+    """
     if not any(evidence.ends(kind) for kind in evidence.KINDS):
         yield from _misspelt_question(evidence)
         return
