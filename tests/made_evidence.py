@@ -5,7 +5,7 @@ import time
 
 from my_robot_basics.doctor.callback import Callback
 from my_robot_basics.doctor.evidence import Endpoint, Evidence, NodeState, ReceivedMessage
-from my_robot_basics.doctor.service_evidence import ServiceEvidence
+from my_robot_basics.doctor.served_evidence import ServiceEvidence
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState

@@ -1,11 +1,11 @@
 """Each planted fault of an action is reported first; a correct server has no fault."""
 
 import pytest
-from my_robot_basics.doctor.action_evidence import ActionEvidence, StandingGoal
 from my_robot_basics.doctor.action_rules import judge
 from my_robot_basics.doctor.diagnosing import diagnose
 from my_robot_basics.doctor.evidence import Endpoint
 from my_robot_basics.doctor.report import tell
+from my_robot_basics.doctor.served_evidence import ActionEvidence, StandingGoal
 from my_robot_basics.live import run, stop, wait_until
 from my_robot_basics.session import classroom
 from nodes.running import imported

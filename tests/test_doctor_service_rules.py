@@ -18,7 +18,7 @@ from made_evidence import (
     silent,
 )
 from my_robot_basics.doctor import as_html, picture, report, service_rules
-from my_robot_basics.doctor.service_evidence import Unanswered
+from my_robot_basics.doctor.served_evidence import Unanswered
 
 WORKING = callback(GRIPPER, 'move', service_name=NAME, holds=(GRIPPER,))
 WAITING = callback(WAVER, 'ask', waits_in='wait_for_service', waits_for=NAME, holds=(WAVER,))

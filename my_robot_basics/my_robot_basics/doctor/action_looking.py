@@ -13,10 +13,10 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_action_status_default
 
 from my_robot_basics.doctor import remaps
-from my_robot_basics.doctor.action_evidence import ActionEvidence, StandingGoal
 from my_robot_basics.doctor.evidence import Endpoint, Kind, NodeState
 from my_robot_basics.doctor.inside import Inside
 from my_robot_basics.doctor.looking import missing_participants
+from my_robot_basics.doctor.served_evidence import ActionEvidence, StandingGoal
 from my_robot_basics.graph import actions
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.ros2 import interfaces

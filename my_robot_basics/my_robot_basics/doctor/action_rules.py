@@ -6,10 +6,10 @@
 from collections.abc import Callable, Iterable, Iterator
 
 from my_robot_basics.doctor import code
-from my_robot_basics.doctor.action_evidence import ActionEvidence
 from my_robot_basics.doctor.client_types import clients_of_another_type, types_differ
 from my_robot_basics.doctor.evidence import Diagnosis, Finding
 from my_robot_basics.doctor.rules import callbacks, endpoints, names
+from my_robot_basics.doctor.served_evidence import ActionEvidence
 
 
 def no_server(evidence: ActionEvidence) -> Iterator[Finding]:

@@ -23,11 +23,11 @@ def main(argv: list[str] | None = None) -> int:
         ' does not answer, and how to fix it. No service is ever called, and no goal sent.',
         epilog='Exit status: 0 when all is well, 1 when a fault was found, 2 on wrong usage.',
     )
-    completion.set_completer(
-        parser.add_argument(
-            'name', help='of the topic, service or action, for example /kinematics/joint_states'
-        ),
-        completion.topic_and_service_names,
+    completion.add_argument(
+        parser,
+        'name',
+        completer=completion.topic_and_service_names,
+        help='of the topic, service or action, for example /kinematics/joint_states',
     )
     parser.add_argument(
         '--domains',

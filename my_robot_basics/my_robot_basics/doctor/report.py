@@ -4,7 +4,6 @@ from functools import partial
 
 from wcwidth import ljust
 
-from my_robot_basics.doctor.action_evidence import ActionEvidence
 from my_robot_basics.doctor.evidence import (
     VERBS,
     Diagnosis,
@@ -13,7 +12,7 @@ from my_robot_basics.doctor.evidence import (
     GraphEvidence,
     Kind,
 )
-from my_robot_basics.doctor.service_evidence import ServiceEvidence
+from my_robot_basics.doctor.served_evidence import ActionEvidence, ServiceEvidence
 from my_robot_basics.language.catalogues import ENGLISH
 from my_robot_basics.language.lines import in_lines
 from my_robot_basics.language.speaking import in_language, put

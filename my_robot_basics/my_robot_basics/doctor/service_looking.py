@@ -12,7 +12,7 @@ from my_robot_basics.doctor.asking import Questions
 from my_robot_basics.doctor.evidence import Endpoint, Kind, NodeState
 from my_robot_basics.doctor.inside import SURE_SEC, Inside
 from my_robot_basics.doctor.looking import missing_participants
-from my_robot_basics.doctor.service_evidence import ServiceEvidence, Unanswered
+from my_robot_basics.doctor.served_evidence import ServiceEvidence, Unanswered
 from my_robot_basics.graph import services
 from my_robot_basics.graph.watcher import Watcher
 from my_robot_basics.session.pressure import Stopwatch

@@ -9,7 +9,7 @@ from my_robot_basics.doctor import code
 from my_robot_basics.doctor.client_types import clients_of_another_type, types_differ
 from my_robot_basics.doctor.evidence import Diagnosis, Finding
 from my_robot_basics.doctor.rules import callbacks, endpoints, names
-from my_robot_basics.doctor.service_evidence import ServiceEvidence
+from my_robot_basics.doctor.served_evidence import ServiceEvidence
 
 
 def no_server(evidence: ServiceEvidence) -> Iterator[Finding]:

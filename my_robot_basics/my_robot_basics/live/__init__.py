@@ -15,76 +15,14 @@ The code is in packages; each imports only from those before it in LAYERS:
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from my_robot_basics.session import classroom, domain
 from my_robot_basics.session.classroom import show_domain
 
-if TYPE_CHECKING:
-    from my_robot_basics.live.nodes.exercise import reset, run_answer
-    from my_robot_basics.live.nodes.runner import run, stop
-    from my_robot_basics.live.output.waiting import wait_until
-    from my_robot_basics.live.packages.commands import run_commands
-    from my_robot_basics.live.packages.entry_points import add_entry_point
-    from my_robot_basics.live.packages.node_file import show_workspace
-    from my_robot_basics.live.packages.packages import build_package, make_package, run_executable
-    from my_robot_basics.live.packages.workspace import make_workspace
-    from my_robot_basics.live.pictures.arm import show_arm
-    from my_robot_basics.live.pictures.branches import show_branches
-    from my_robot_basics.live.pictures.camera import send_pictures
-    from my_robot_basics.live.pictures.definition_view import show_definition
-    from my_robot_basics.live.pictures.doctor import why
-    from my_robot_basics.live.pictures.follow import follow_arm
-    from my_robot_basics.live.pictures.goal_view import follow_goal
-    from my_robot_basics.live.pictures.graph_picture import show_graph
-    from my_robot_basics.live.pictures.qos_offers import show_offers
-    from my_robot_basics.live.pictures.qos_pairs import measure_pairs
-    from my_robot_basics.live.pictures.qos_pictures import show_lost_messages, show_qos_matrix
-    from my_robot_basics.live.pictures.queue_picture import show_queues
-    from my_robot_basics.live.pictures.service_picture import show_service
-    from my_robot_basics.live.pictures.sliders import move_arm
-    from my_robot_basics.live.pictures.target import drag_target
-    from my_robot_basics.live.pictures.timeline import show_arrivals, show_deliveries
-
 LAYERS = ('output', 'patches', 'packages', 'nodes', 'pictures', 'unknown_robot', 'extension')
 """The parts, lowest layer first."""
-__all__ = [
-    'add_entry_point',
-    'build_package',
-    'classroom',
-    'domain',
-    'drag_target',
-    'follow_arm',
-    'follow_goal',
-    'make_package',
-    'make_workspace',
-    'measure_pairs',
-    'move_arm',
-    'reset',
-    'run',
-    'run_answer',
-    'run_commands',
-    'run_executable',
-    'send_pictures',
-    'show_arm',
-    'show_arrivals',
-    'show_branches',
-    'show_definition',
-    'show_deliveries',
-    'show_domain',
-    'show_graph',
-    'show_lost_messages',
-    'show_offers',
-    'show_qos_matrix',
-    'show_queues',
-    'show_service',
-    'show_workspace',
-    'stop',
-    'wait_until',
-    'why',
-]
-
-_MODULES = {
+_HOMES = {
     'run': 'nodes.runner',
     'stop': 'nodes.runner',
     'reset': 'nodes.exercise',
@@ -117,8 +55,10 @@ _MODULES = {
     'show_definition': 'pictures.definition_view',
 }
 
+__all__ = [*_HOMES, 'classroom', 'domain', 'show_domain']
+
 
 def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
+    if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
-    return getattr(import_module(f'{__name__}.{_MODULES[name]}'), name)
+    return getattr(import_module(f'{__name__}.{_HOMES[name]}'), name)

@@ -8,9 +8,14 @@ from my_robot_basics.ros2 import interfaces
 from my_robot_basics.ros2.graph import Graph
 
 
-def set_completer(action: argparse.Action, completer: Callable[..., Iterable[str]]) -> None:
-    """Set the completer of an argument, in the attribute that argcomplete reads."""
-    vars(action)['completer'] = completer
+def add_argument(
+    parser: argparse._ActionsContainer,
+    *names: str,
+    completer: Callable[..., Iterable[str]],
+    **options: Any,
+) -> None:
+    """Add an argument with a completer, in the attribute that argcomplete reads."""
+    vars(parser.add_argument(*names, **options))['completer'] = completer
 
 
 def topic_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:

@@ -93,8 +93,9 @@ def type_names() -> dict[int, str]:
 def add_node(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a verb for one node."""
     arguments.add_discovery(parser)
-    node_name = parser.add_argument('node_name', help='Name of the ROS node')
-    completion.set_completer(node_name, completion.node_names)
+    completion.add_argument(
+        parser, 'node_name', completer=completion.node_names, help='Name of the ROS node'
+    )
     parser.add_argument(
         '--include-hidden-nodes', action='store_true', help='Consider hidden nodes as well'
     )
@@ -110,8 +111,9 @@ def add_node(parser: argparse.ArgumentParser) -> None:
 def add_one_parameter(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a verb for one parameter of one node."""
     add_node(parser)
-    parameter_name = parser.add_argument('parameter_name', help='Name of the parameter')
-    completion.set_completer(parameter_name, parameter_names)
+    completion.add_argument(
+        parser, 'parameter_name', completer=parameter_names, help='Name of the parameter'
+    )
 
 
 def parameter_names(parsed_args: argparse.Namespace, **_: object) -> list[str]:

@@ -12,26 +12,26 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument('action_name', help="Name of the ROS action (e.g. '/fibonacci')"),
-        completion.action_names,
+    completion.add_argument(
+        parser,
+        'action_name',
+        completer=completion.action_names,
+        help="Name of the ROS action (e.g. '/fibonacci')",
     )
-    completion.set_completer(
-        parser.add_argument(
-            'action_type',
-            help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
-        ),
-        completion.action_types_of,
+    completion.add_argument(
+        parser,
+        'action_type',
+        completer=completion.action_types_of,
+        help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
     )
     source = parser.add_mutually_exclusive_group()
-    completion.set_completer(
-        source.add_argument(
-            'goal',
-            nargs='?',
-            default='{}',
-            help="Goal request values in YAML format (e.g. '{order: 10}')",
-        ),
-        completion.goal_prototype,
+    completion.add_argument(
+        source,
+        'goal',
+        completer=completion.goal_prototype,
+        nargs='?',
+        default='{}',
+        help="Goal request values in YAML format (e.g. '{order: 10}')",
     )
     source.add_argument('--stdin', action='store_true', help='Read goal from standard input')
     parser.add_argument(

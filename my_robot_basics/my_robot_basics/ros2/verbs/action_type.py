@@ -8,11 +8,11 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'action_name', help="Name of the ROS action to get info (e.g. '/fibonacci')"
-        ),
-        completion.action_names,
+    completion.add_argument(
+        parser,
+        'action_name',
+        completer=completion.action_names,
+        help="Name of the ROS action to get info (e.g. '/fibonacci')",
     )
 
 

@@ -9,11 +9,11 @@ from my_robot_basics.ros2.verbs.interface_list import add_kinds
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     add_kinds(parser)
-    completion.set_completer(
-        parser.add_argument(
-            'package_name', help="Name of the ROS package (e.g. 'example_interfaces')"
-        ),
-        completion.interface_packages,
+    completion.add_argument(
+        parser,
+        'package_name',
+        completer=completion.interface_packages,
+        help="Name of the ROS package (e.g. 'example_interfaces')",
     )
 
 

@@ -7,11 +7,11 @@ from my_robot_basics.ros2 import completion, interfaces
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'type', help="Show an interface definition (e.g. 'example_interfaces/msg/String')"
-        ),
-        completion.interface_types,
+    completion.add_argument(
+        parser,
+        'type',
+        completer=completion.interface_types,
+        help="Show an interface definition (e.g. 'example_interfaces/msg/String')",
     )
     parser.add_argument(
         '--no-quotes', action='store_true', help='if true output has no outer quotes.'

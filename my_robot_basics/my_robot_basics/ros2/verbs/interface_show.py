@@ -19,13 +19,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     comments.add_argument(
         '--no-comments', action='store_true', help='Show no comments or whitespace'
     )
-    type_ = parser.add_argument(
+    completion.add_argument(
+        parser,
         'type',
+        completer=completion.interface_types,
         type=_name,
         help="Show an interface definition (e.g. 'std_msgs/msg/String'). Passing '-' reads the "
         "argument from stdin (e.g. 'ros2 topic type /chatter | ros2 interface show -').",
     )
-    completion.set_completer(type_, completion.interface_types)
 
 
 def main(args: argparse.Namespace) -> None:

@@ -11,9 +11,11 @@ from my_robot_basics.ros2.node_name import NodeName
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.set_completer(
-        parser.add_argument('node_name', help='Node name to request information'),
-        completion.node_names,
+    completion.add_argument(
+        parser,
+        'node_name',
+        completer=completion.node_names,
+        help='Node name to request information',
     )
     parser.add_argument(
         '--include-hidden',

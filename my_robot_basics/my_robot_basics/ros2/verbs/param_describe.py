@@ -10,8 +10,13 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     parameters.add_node(parser)
-    names = parser.add_argument('parameter_names', nargs='+', help='Names of the parameters')
-    completion.set_completer(names, parameters.parameter_names)
+    completion.add_argument(
+        parser,
+        'parameter_names',
+        completer=parameters.parameter_names,
+        nargs='+',
+        help='Names of the parameters',
+    )
 
 
 def main(args: argparse.Namespace) -> None:

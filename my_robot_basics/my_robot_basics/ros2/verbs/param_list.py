@@ -12,9 +12,12 @@ from my_robot_basics.ros2.parameters import ParameterServices, absolute, type_na
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.set_completer(
-        parser.add_argument('node_name', nargs='?', help='Name of the ROS node'),
-        completion.node_names,
+    completion.add_argument(
+        parser,
+        'node_name',
+        completer=completion.node_names,
+        nargs='?',
+        help='Name of the ROS node',
     )
     parser.add_argument(
         '--filter',

@@ -7,8 +7,8 @@ from my_robot_basics.ros2 import completion, packages
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument('package_name', help='The package name'), completion.package_names
+    completion.add_argument(
+        parser, 'package_name', completer=completion.package_names, help='The package name'
     )
     parser.add_argument(
         '--share', action='store_true', help='Show share directory for the package'

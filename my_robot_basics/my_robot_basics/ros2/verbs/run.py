@@ -14,13 +14,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='Prefix command, which should go before the executable. Command must be wrapped in '
         "quotes if it contains spaces (e.g. --prefix 'gdb -ex run --args').",
     )
-    completion.set_completer(
-        parser.add_argument('package_name', help='Name of the ROS package'),
-        completion.package_names,
+    completion.add_argument(
+        parser, 'package_name', completer=completion.package_names, help='Name of the ROS package'
     )
-    completion.set_completer(
-        parser.add_argument('executable_name', help='Name of the executable'),
-        completion.executable_names,
+    completion.add_argument(
+        parser,
+        'executable_name',
+        completer=completion.executable_names,
+        help='Name of the executable',
     )
     parser.add_argument(
         'argv',

@@ -12,28 +12,27 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'service_name', help="Name of the ROS service to call to (e.g. '/add_two_ints')"
-        ),
-        completion.service_names,
+    completion.add_argument(
+        parser,
+        'service_name',
+        completer=completion.service_names,
+        help="Name of the ROS service to call to (e.g. '/add_two_ints')",
     )
-    completion.set_completer(
-        parser.add_argument(
-            'service_type', help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')"
-        ),
-        completion.service_types_of,
+    completion.add_argument(
+        parser,
+        'service_type',
+        completer=completion.service_types_of,
+        help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')",
     )
     source = parser.add_mutually_exclusive_group()
-    completion.set_completer(
-        source.add_argument(
-            'values',
-            nargs='?',
-            default='{}',
-            help="Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}'), "
-            'otherwise the service request will be published with default values',
-        ),
-        completion.request_prototype,
+    completion.add_argument(
+        source,
+        'values',
+        completer=completion.request_prototype,
+        nargs='?',
+        default='{}',
+        help="Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}'), "
+        'otherwise the service request will be published with default values',
     )
     source.add_argument('--stdin', action='store_true', help='Read values from standard input')
     parser.add_argument(

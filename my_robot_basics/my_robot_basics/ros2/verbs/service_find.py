@@ -8,13 +8,12 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'service_type',
-            help="Name of the ROS service type to filter for (e.g. 'rcl_interfaces/srv/"
-            "ListParameters')",
-        ),
-        completion.service_types,
+    completion.add_argument(
+        parser,
+        'service_type',
+        completer=completion.service_types,
+        help="Name of the ROS service type to filter for (e.g. 'rcl_interfaces/srv/"
+        "ListParameters')",
     )
     names_and_types.add_count(parser, 'service')
     arguments.add_hidden_services(parser)

@@ -9,11 +9,11 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.set_completer(
-        parser.add_argument(
-            'service_name', help="Name of the ROS service to get info (e.g. '/add_two_ints')"
-        ),
-        completion.service_names,
+    completion.add_argument(
+        parser,
+        'service_name',
+        completer=completion.service_names,
+        help="Name of the ROS service to get info (e.g. '/add_two_ints')",
     )
 
 

@@ -8,12 +8,11 @@ from my_robot_basics.ros2.graph import Graph
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'service_name',
-            help="Name of the ROS service to get type (e.g. '/talker/list_parameters')",
-        ),
-        completion.service_names,
+    completion.add_argument(
+        parser,
+        'service_name',
+        completer=completion.service_names,
+        help="Name of the ROS service to get type (e.g. '/talker/list_parameters')",
     )
 
 

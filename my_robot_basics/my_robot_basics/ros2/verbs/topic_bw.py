@@ -15,11 +15,12 @@ UNITS = ((1, 'B', 0), (1000, 'KB', 2), (1000_000, 'MB', 2))
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'topic_name', metavar='topic', help='Topic name to monitor for bandwidth utilization'
-        ),
-        completion.topic_names,
+    completion.add_argument(
+        parser,
+        'topic_name',
+        completer=completion.topic_names,
+        metavar='topic',
+        help='Topic name to monitor for bandwidth utilization',
     )
     parser.add_argument(
         '--window',

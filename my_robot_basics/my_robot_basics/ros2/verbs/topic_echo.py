@@ -18,17 +18,18 @@ DEFAULT_TRUNCATE_LENGTH = 128
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.set_completer(
-        parser.add_argument(
-            'topic_name', help="Name of the ROS topic to listen to (e.g. '/chatter')"
-        ),
-        completion.topic_names,
+    completion.add_argument(
+        parser,
+        'topic_name',
+        completer=completion.topic_names,
+        help="Name of the ROS topic to listen to (e.g. '/chatter')",
     )
-    completion.set_completer(
-        parser.add_argument(
-            'message_type', nargs='?', help="Type of the ROS message (e.g. 'std_msgs/msg/String')"
-        ),
-        completion.topic_types,
+    completion.add_argument(
+        parser,
+        'message_type',
+        completer=completion.topic_types,
+        nargs='?',
+        help="Type of the ROS message (e.g. 'std_msgs/msg/String')",
     )
     arguments.add_qos(parser, 'subscribe', 'sensor_data')
     parser.add_argument(

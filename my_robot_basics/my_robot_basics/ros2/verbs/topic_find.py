@@ -9,12 +9,11 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.set_completer(
-        parser.add_argument(
-            'topic_type',
-            help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
-        ),
-        completion.message_types,
+    completion.add_argument(
+        parser,
+        'topic_type',
+        completer=completion.message_types,
+        help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
     )
     names_and_types.add_count(parser, 'topic')
     arguments.add_hidden_topics(parser)

@@ -15,11 +15,11 @@ SECOND_NSEC = 10**9
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'topic_name', help="Name of the ROS topic to listen to (e.g. '/chatter')"
-        ),
-        completion.topic_names,
+    completion.add_argument(
+        parser,
+        'topic_name',
+        completer=completion.topic_names,
+        help="Name of the ROS topic to listen to (e.g. '/chatter')",
     )
     parser.add_argument(
         '--window',

@@ -9,11 +9,11 @@ from my_robot_basics.ros2.graph import Graph
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     arguments.add_discovery(parser)
-    completion.set_completer(
-        parser.add_argument(
-            'topic_name', help="Name of the ROS topic to get info (e.g. '/chatter')"
-        ),
-        completion.topic_names,
+    completion.add_argument(
+        parser,
+        'topic_name',
+        completer=completion.topic_names,
+        help="Name of the ROS topic to get info (e.g. '/chatter')",
     )
     parser.add_argument(
         '--verbose',

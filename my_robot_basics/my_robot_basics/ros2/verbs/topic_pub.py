@@ -15,28 +15,27 @@ TAKEN_SEC = 5.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
-    completion.set_completer(
-        parser.add_argument(
-            'topic_name', help="Name of the ROS topic to publish to (e.g. '/chatter')"
-        ),
-        completion.topic_names,
+    completion.add_argument(
+        parser,
+        'topic_name',
+        completer=completion.topic_names,
+        help="Name of the ROS topic to publish to (e.g. '/chatter')",
     )
-    completion.set_completer(
-        parser.add_argument(
-            'message_type', help="Type of the ROS message (e.g. 'std_msgs/String')"
-        ),
-        completion.topic_types,
+    completion.add_argument(
+        parser,
+        'message_type',
+        completer=completion.topic_types,
+        help="Type of the ROS message (e.g. 'std_msgs/String')",
     )
     source = parser.add_mutually_exclusive_group()
-    completion.set_completer(
-        source.add_argument(
-            'values',
-            nargs='?',
-            default='{}',
-            help="Values to fill the message with in YAML format (e.g. 'data: Hello World'), "
-            'otherwise the message will be published with default values',
-        ),
-        completion.prototype,
+    completion.add_argument(
+        source,
+        'values',
+        completer=completion.prototype,
+        nargs='?',
+        default='{}',
+        help="Values to fill the message with in YAML format (e.g. 'data: Hello World'), "
+        'otherwise the message will be published with default values',
     )
     source.add_argument('--stdin', action='store_true', help='Read values from standard input')
     parser.add_argument(
