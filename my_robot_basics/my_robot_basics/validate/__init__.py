@@ -12,9 +12,8 @@ The code is in packages and a few modules; each imports only from those before i
 - `progress`: Which exercises have passed, remembered on the student's own machine.
 - `running`: *Validate* itself: opens rooms, judges a lesson in them, returns its report.
 - `served`: Files that a Jupyter server serves.
-- `progress_server`: A student's progress, for the list above the contents page.
 - `harmless_addresses`: Addresses of a Jupyter server, which run nothing that others chose.
-- `server`: Shows *Validate* and the progress in JupyterLab, with `labextension/`.
+- `server`: Shows *Validate*, and a student's progress, in JupyterLab, with `labextension/`.
 - `__main__`: `./course validate`.
 """
 
@@ -29,7 +28,6 @@ LAYERS = (
     'progress',
     'running',
     'served',
-    'progress_server',
     'harmless_addresses',
     'server',
     '__main__',

@@ -18,12 +18,15 @@ from jupyter_server.utils import url_path_join
 from tornado import iostream, web
 
 from my_robot_basics.language.speaking import language_of
-from my_robot_basics.validate import progress_server
+from my_robot_basics.validate.errors import CourseError
 from my_robot_basics.validate.harmless_addresses import make_addresses_harmless
+from my_robot_basics.validate.progress.passed_answers import default_path
+from my_robot_basics.validate.progress.progress import read_progress
 from my_robot_basics.validate.reports.report_words import front_end_texts
 from my_robot_basics.validate.served import path_below
 
 ADDRESS = 'my_robot_basics/validate'
+PROGRESS_ADDRESS = 'my_robot_basics/progress'
 MAX_LINE_BYTES = 2**26
 """The longest line: a report with its pictures is one line."""
 STOP_TIMEOUT_SEC = 15.0
@@ -111,12 +114,28 @@ async def _end_of(process: asyncio.subprocess.Process) -> None:
         process.kill()
 
 
+class ProgressHandler(APIHandler):
+    """Answers ?path=, a contents page below the server's root, with the progress as JSON."""
+
+    @web.authenticated
+    async def get(self) -> None:
+        """Read the page, the lessons beside it and the passed answers."""
+        assert self.serverapp is not None  # a handler has one
+        page = path_below(self.serverapp, self.get_query_argument('path'))
+        try:
+            told = await asyncio.to_thread(read_progress, page, default_path())
+        except CourseError as error:
+            self.finish({'failed': str(error)})
+        else:
+            self.finish(told.as_data())
+
+
 def _jupyter_server_extension_points() -> list[dict[str, str]]:
     return [{'module': 'my_robot_basics.validate.server'}]
 
 
 def _load_jupyter_server_extension(server: ServerApp) -> None:
     make_addresses_harmless()
-    handlers = {ADDRESS: ValidateHandler, progress_server.ADDRESS: progress_server.ProgressHandler}
+    handlers = {ADDRESS: ValidateHandler, PROGRESS_ADDRESS: ProgressHandler}
     base = server.web_app.settings['base_url']
     server.web_app.add_handlers('.*$', [(url_path_join(base, a), h) for a, h in handlers.items()])

@@ -15,7 +15,6 @@ from typing import Self
 
 import psutil
 
-from my_robot_basics.session import marked_processes
 from my_robot_basics.validate.errors import RoomFailure
 
 _MARK = 'MY_ROBOT_BASICS_VALIDATE'
@@ -51,7 +50,7 @@ class ForkServer:
             self._process.communicate(timeout=_END_SEC)
         self._process.kill()
         self._process.wait()
-        marked_processes.end(_MARK, self._mark)
+        _end_marked(_MARK, self._mark)
 
     async def fork(
         self, folder: Path, environment: dict[str, str], arguments: list[str]
@@ -126,3 +125,11 @@ class ForkedKernel:
     def _send(self, number: int) -> None:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self._pid, number)
+
+
+def _end_marked(name: str, mark: str) -> None:
+    """Kill all processes, as far as permitted, whose environment variable `name` is `mark`."""
+    for process in psutil.process_iter():
+        with contextlib.suppress(psutil.Error):
+            if process.environ().get(name) == mark:
+                process.kill()
