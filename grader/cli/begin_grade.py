@@ -10,20 +10,20 @@ from grader.workers.backend import Backend
 from grader.workers.workers import Workers
 
 
-def run_grade(course: Course, asked: argparse.Namespace) -> int:
-    """Run the verb; return its exit status."""
+def start_workers_and_grade(course: Course, asked: argparse.Namespace) -> int:
+    """Start workers if anything is new, then grade and report; return the exit status."""
     cluster = _cluster(asked)
     found = find_submissions(course, assignment=asked.assignment, student_id=asked.student)
     if cluster:
         from grader.cli import grade_verb
 
-        return grade_verb.run_grade(course, asked, found, cluster)
+        return grade_verb.grade_and_report(course, asked, found, cluster)
     with Workers(asked.workers) as workers:
         if asked.force or asked.seed or any(is_new(course, each) for each in found):
             workers.begin()
         with pause_garbage_collection():
             from grader.cli import grade_verb
-        return grade_verb.run_grade(course, asked, found, workers)
+        return grade_verb.grade_and_report(course, asked, found, workers)
 
 
 def _cluster(asked: argparse.Namespace) -> Backend | None:

@@ -29,7 +29,7 @@ _AGAIN = (
 _BY_HAND = 'points by hand (.venv/bin/jupyter lab, menu Nbgrader, Formgrader), '
 
 
-def run_grade(
+def grade_and_report(
     course: Course,
     asked: argparse.Namespace,
     submissions: Sequence[SubmissionFolder],
@@ -37,10 +37,10 @@ def run_grade(
 ) -> int:
     """Grade, print a row for each submission, write the report; return 1 if one was not graded."""
     with share_engine(course.db_url):
-        return _run_grade(course, asked, submissions, backend)
+        return _grade_and_report(course, asked, submissions, backend)
 
 
-def _run_grade(
+def _grade_and_report(
     course: Course,
     asked: argparse.Namespace,
     submissions: Sequence[SubmissionFolder],

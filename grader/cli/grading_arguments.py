@@ -45,7 +45,7 @@ def add_grade(add: AddVerb) -> None:
     )
     text, known = 'of the page that reports the run', [ENGLISH, *languages(LOCALE)]
     verb.add_argument('--language', choices=known, default=ENGLISH, help=text)
-    verb.set_defaults(run=verbs.run_grade, begin=verbs.begin_grade)
+    verb.set_defaults(run=verbs.run_grade, begin=verbs.try_sandbox_early)
 
 
 def add_serve(add: AddVerb) -> None:

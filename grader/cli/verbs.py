@@ -101,7 +101,7 @@ def run_due(course: 'Course', asked: argparse.Namespace) -> int:
     return 0
 
 
-def begin_grade(asked: argparse.Namespace) -> None:
+def try_sandbox_early(asked: argparse.Namespace) -> None:
     """Begin to try the sandbox in a thread: it mostly waits, and imports go on meanwhile."""
     from grader.kernels.isolation import try_in_background
 
@@ -113,7 +113,7 @@ def run_grade(course: 'Course', asked: argparse.Namespace) -> int:
     """Grade, with a row for each submission, or grade again with a seed and compare."""
     from grader.cli import begin_grade
 
-    return begin_grade.run_grade(course, asked)
+    return begin_grade.start_workers_and_grade(course, asked)
 
 
 def run_serve(course: 'Course', asked: argparse.Namespace) -> int:
