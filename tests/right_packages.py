@@ -1,6 +1,7 @@
 """Packages for lesson 12 that are right, in unusual ways."""
 
 from package_changes import DRIVER, PLAYER, SETUP, Change, Files, swap, without
+from player_styles import STYLES
 
 
 def _one_module(files: Files) -> None:
@@ -320,4 +321,94 @@ RIGHT += (
             ("' '.join(words)", 'json.dumps(words)'),
         ),
     ),
+)
+
+
+def _crlf(files: Files) -> None:
+    """The files of an editor of Windows."""
+    for name in files:
+        files[name] = files[name].replace('\n', '\r\n')
+
+
+def _as_created(files: Files) -> None:
+    """What `ros2 pkg create` of Jazzy and an instruction on the web bring, with their TODOs."""
+    files['test/test_copyright.py'] = 'from ament_copyright.main import main\n'
+    files['launch/arm.launch.py'] = 'from launch import LaunchDescription\n'
+    files['config/targets.yaml'] = '/arm_player:\n  ros__parameters:\n    targets: [1.2, 0.8]\n'
+    files['README.md'] = files['LICENSE'] = 'TODO\n'
+    swap(
+        SETUP,
+        (
+            'from setuptools import setup\n',
+            'import os\nfrom glob import glob\n\nfrom setuptools import find_packages, setup\n\n'
+            "package_name = 'arm_player'\n",
+        ),
+        ("name='arm_player'", 'name=package_name'),
+        ("packages=['arm_player']", "packages=find_packages(exclude=['test'])"),
+        (
+            "        ('share/arm_player', ['package.xml']),\n",
+            "        (os.path.join('share', package_name), ['package.xml']),\n"
+            "        (os.path.join('share', package_name, 'launch'), glob('launch/*.py')),\n"
+            "        (os.path.join('share', package_name, 'config'), glob('config/*.yaml')),\n",
+        ),
+        ('student@example.com', 'root@todo.todo'),
+        ('Apache-2.0', 'TODO: License declaration'),
+    )(files)
+    swap('package.xml', ('Apache-2.0', 'TODO: License declaration'))(files)
+
+
+def _modules_alone(files: Files) -> None:
+    """Both modules lie beside setup.py, in no Python package."""
+    del files['arm_player/__init__.py']
+    for name in DRIVER, PLAYER:
+        files[name.removeprefix('arm_player/')] = files.pop(name)
+    swap(
+        SETUP,
+        ("packages=['arm_player']", "py_modules=['arm_player', 'arm_driver']"),
+        ('arm_player.arm_driver:main', 'arm_driver:main'),
+        ('arm_player.arm_player:main', 'arm_player:main'),
+    )(files)
+
+
+def _folder_in_the_package(files: Files) -> None:
+    files['arm_player/nodes/__init__.py'] = ''
+    for name in DRIVER, PLAYER:
+        files[name.replace('/', '/nodes/')] = files.pop(name)
+    swap(
+        SETUP,
+        ("packages=['arm_player']", "packages=['arm_player', 'arm_player.nodes']"),
+        ('= arm_player.', '= arm_player.nodes.'),
+    )(files)
+
+
+def _pyproject(files: Files) -> None:
+    """The data of pyproject.toml, and a setup.py that only calls setup()."""
+    files[SETUP] = 'from setuptools import setup\n\nsetup()\n'
+    files['pyproject.toml'] = """[build-system]
+requires = ["setuptools"]
+build-backend = "setuptools.build_meta"
+[project]
+name = "arm_player"
+version = "0.1.0"
+[project.scripts]
+arm_driver = "arm_player.arm_driver:main"
+arm_player = "arm_player.arm_player:main"
+[tool.setuptools]
+packages = ["arm_player"]
+[tool.setuptools.data-files]
+"share/ament_index/resource_index/packages" = ["resource/arm_player"]
+"share/arm_player" = ["package.xml"]
+"""
+
+
+RIGHT += (
+    *(
+        Change(f'style_{name}', lambda files, text=text: files.update({PLAYER: text}))
+        for name, text in STYLES.items()
+    ),
+    Change('crlf', _crlf),
+    Change('as_created', _as_created),
+    Change('modules_alone', _modules_alone),
+    Change('folder_in_the_package', _folder_in_the_package),
+    Change('pyproject', _pyproject),
 )

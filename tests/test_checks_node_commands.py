@@ -80,6 +80,9 @@ MISTAKES = [
     ('-r __ns:=/right/ -r __node:=arm', 'has no / at its end: write -r __ns:=/right'),
     ('-r __ns:=/right -r __node:=arm -p seed:=7.0', 'see whether the node has ended'),
     ('-r __ns:=/right -r __node:=arm -p seed=7', "written name:=value: 'seed=7' is none"),
+    ('-r __ns:=/right -r __node:=arm -p /right/arm:seed:=7', 'parameter alone, -p seed:=…'),
+    (f'-r __ns:=/right -r __node:=arm -r {TOPIC}:=joint_states -p arm:seed:=7',
+     r'seed = 7 of /right/arm, saw \d+: arm:seed gives the node no seed: the command line is of'),
     ('-r __ns:=/right -r __node:=arm -r seed:=7', 'give the parameter with -p seed:=7'),
     ('-r __ns:=/right -r __node:=arm', 'saw it publishes on /kinematics/joint_states: the name of '
      'the topic begins with /, so no namespace moves it'),

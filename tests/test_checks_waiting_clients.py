@@ -22,7 +22,8 @@ def impatient(monkeypatch):
 WAITS = (
     "it called `/solve_ik` inside a callback and waited there: the answer can't be delivered "
     'while the callback runs, or while all threads of its executor wait like this; use '
-    'call_async and add_done_callback'
+    'call_async and add_done_callback, or `await` with the callback and the client in one '
+    'ReentrantCallbackGroup'
 )
 
 

@@ -68,6 +68,10 @@ def test_an_invalid_package_name_is_refused(name):
 
 WRONG = {
     'no manifest': ({'package.xml': None}, 'has no package.xml, so it is no ROS package yet'),
+    'a folder too deep': (
+        {'package.xml': None, 'greeter/package.xml': '<package/>'},
+        'package.xml is in greeter/greeter/, and has to be in greeter/: move all that is in',
+    ),
     'a broken manifest': ({'package.xml': '<package'}, 'greeter/package.xml is not valid'),
     'another name': (
         {'package.xml': lambda text: text.replace('<name>greeter', '<name>greeting')},

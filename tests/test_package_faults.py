@@ -76,6 +76,23 @@ def test_only_an_interrupt_is_to_be_caught_for_a_clean_end(error, advice):
     assert advice in package_words.why_not_clean(1, said)
 
 
+def test_arguments_that_argparse_does_not_know_are_explained():
+    said = 'usage: arm_player [-h]\narm_player: error: unrecognized arguments: --ros-args -p a:=1'
+    assert 'a:=1, so write parse_known_args() for' in package_words.describe_end(2, said)
+
+
+def test_an_exit_code_without_an_exception_is_attributed_to_what_main_returns():
+    process = types.SimpleNamespace(code=1, lines=['<arm_player.ArmPlayer object at 0x7f>'])
+    said = executables.how_it_ended(types.SimpleNamespace(process=process), signal.SIGINT)
+    advice = package_words.why_not_clean(1, process.lines[0])
+    assert said == f'ended after SIGINT, but not cleanly (exit code 1): {advice}'
+    assert 'return nothing, or 0' in advice
+    cut = '  File "x", line 1, in main\nrclpy._rclpy_pybind11.RCLError: failed to shutdown'
+    for said in cut, f'Traceback (most recent call last):\n{cut}':
+        assert package_words.why_not_clean(1, said) == package_words.CLEANLY
+    assert package_words.why_not_clean(-signal.SIGINT, '') == package_words.CLEANLY
+
+
 def test_the_error_is_picked_from_the_output_of_colcon():
     words = (
         'Starting >>> greeter\n--- stderr: greeter\nTraceback (most recent call last):\n'
@@ -137,6 +154,7 @@ def installed(tmp_path, entry):
         ('greet = greeter.greet:main', None, 'greeter/greet.py was not installed, and greet'),
         ('greet = grete.greet:main', NODE, 'and there is no package grete: correct it'),
         ('greet = greeter.greet.py:main', NODE, 'leave out .py'),
+        ('greet = greet:main', NODE, 'is in the package greeter: write greeter.greet:main'),
         ('greet = a b c', NODE, 'has no executable: name one in entry_points'),
     ],
 )
@@ -147,6 +165,23 @@ def test_a_faulty_entry_point_is_reported(tmp_path, entry, module, words):
         (site / 'greeter/greet.py').write_text(module)
     said = fault_in_install(PACKAGE, prefix, files)
     assert (words in said) if words else (said == '')
+
+
+def test_a_module_without_a_package_may_be_an_executable(tmp_path):
+    files = package_files.read(make_package(tmp_path))
+    prefix, site = installed(tmp_path, 'greet = greet:main')
+    (site / 'greet.py').write_text(NODE)
+    assert fault_in_install(PACKAGE, prefix, files) == ''
+
+
+def test_the_module_is_named_that_an_entry_point_left_out(tmp_path):
+    folder = make_package(tmp_path)
+    (folder / PACKAGE / 'greeter.py').write_text(NODE)
+    files = package_files.read(folder)
+    prefix, site = installed(tmp_path, 'greet = greeter:main')
+    (site / 'greeter/__init__.py').touch()
+    said = fault_in_install(PACKAGE, prefix, files)
+    assert said.endswith('is in the package greeter: write greeter.greeter:main')
 
 
 @pytest.mark.parametrize('name', ['bin', 'lib/other'])

@@ -94,6 +94,9 @@ def error_of(code, **names):
     raise AssertionError(f'{code} raises nothing')
 
 
+NO_AWAIT = 'async def visit():\n    pass\n\n\n'
+
+
 @pytest.mark.parametrize(
     ('code', 'why'),
     [
@@ -140,8 +143,14 @@ def error_of(code, **names):
         (
             'rclpy.Future().reachable',
             ', so take the answer out of the future with .result(), in the function that '
-            'add_done_callback calls: ',
+            'add_done_callback calls, or with `await` in a coroutine: ',
         ),
+        (
+            f'{NO_AWAIT}" ".join([visit()])',
+            ', so put `await` before the call of the async function',
+        ),
+        (f'{NO_AWAIT}visit().status', ', so put `await` before the call of the async function'),
+        (f'{NO_AWAIT}word, end = visit()', ', so put `await` before the call of the async func'),
         ('None.accepted', ', so use the answer in a function that add_done_callback calls: here'),
         ('None.status', ', so use the answer in a function that add_done_callback calls: here it'),
         ('None.reachable', ', so use the answer in a function that add_done_callback calls: here'),

@@ -57,6 +57,8 @@ BAD = [
     (START + ' --ros-args $(id)', 'a $: write what you mean in full'),
     (START + ' --ros-args `id`', 'a `: write what you mean in full'),
     ('{PUBLISHER} -r __ns:=/left', '{PUBLISHER} itself: put an f before the quotation mark'),
+    (START + ' --ros-args -r __ns := /left', 'a space before :=: write no spaces around it'),
+    (START + ' --ros-args -r __ns :=/left', 'a space before :='),
     (START + ' --ros-args -r {TOPIC}:=poses', '{TOPIC} itself: put an f before'),
     (START + ' --ros-args\nid', 'several lines: write one line'),
     (START + " --ros-args -r '__ns", 'no closing quotation: close each quotation mark'),

@@ -1,6 +1,9 @@
 """Packages for lesson 12 with one mistake each, and hostile ones."""
 
+from collections.abc import Callable
+
 from package_changes import CHECKS, DRIVER, PLAYER, SETUP, Change, Files, swap, without
+from player_styles import STYLES
 
 NOTHING = 0, 0, 0
 _FEEDBACK = (
@@ -624,5 +627,81 @@ HOSTILE = (
         ),
         (1, 2, 0),
         {'arm_player_plays': 'the status of the result tells how it ended'},
+    ),
+)
+
+
+def _one_folder_too_deep(files: Files) -> None:
+    for name in [*files]:
+        files[f'arm_player/{name}'] = files.pop(name)
+
+
+def _player(style: str, *pairs: tuple[str, str]) -> Callable[[Files], None]:
+    """Return a change to another style of the player, with texts replaced."""
+
+    def make(files: Files) -> None:
+        files[PLAYER] = STYLES[style]
+        swap(PLAYER, *pairs)(files)
+
+    return make
+
+
+_TRY = '        rclpy.try_shutdown()\n'
+
+WRONG += (
+    Change(
+        'one_folder_too_deep',
+        _one_folder_too_deep,
+        NOTHING,
+        dict.fromkeys(CHECKS, 'package.xml is in arm_player/arm_player/'),
+    ),
+    Change(
+        'entry_point_without_the_package',
+        swap(SETUP, ('= arm_player.arm_driver:main', '= arm_driver:main')),
+        (0, 0, 4),
+        {'package_builds': 'is in the package arm_player: write arm_player.arm_driver:main'},
+    ),
+    Change(
+        'awaits_in_the_default_group',
+        _player('awaits', ('= ReentrantCallbackGroup()', '= None')),
+        (1, 2, 0),
+        {'arm_player_plays': 'or `await` with the callback and the client in one Reentrant'},
+    ),
+    Change(
+        'main_returns_the_node',
+        _player('tutorial', ('        rclpy.try_shutdown()', _TRY + '    return node')),
+        (1, 0, 4),
+        {'package_runs': 'exit code 1, <arm_player.*main returns something'},
+    ),
+    Change(
+        'reads_its_arguments_itself',
+        swap(
+            PLAYER,
+            (
+                '        rclpy.init()',
+                '        ArgumentParser().parse_args()\n        rclpy.init()',
+            ),
+            ('import rclpy\n', 'from argparse import ArgumentParser\n\nimport rclpy\n'),
+        ),
+        (1, 0, 0),
+        dict.fromkeys(('package_runs', 'arm_player_plays'), r'so write parse_known_args\(\)'),
+    ),
+    Change(
+        'no_await_before_a_method',
+        _player('awaits', ('word = await self.visit', 'word = self.visit')),
+        (1, 0, 0),
+        dict.fromkeys(('package_runs', 'arm_player_plays'), 'so put `await` before the call'),
+    ),
+    Change(
+        'no_await_before_the_result',
+        _player('awaits', ('result = await handle', 'result = handle')),
+        (1, 2, 0),
+        {'arm_player_plays': 'or with `await` in a coroutine'},
+    ),
+    Change(
+        'gives_words_of_its_own',
+        _player('awaits', ("return 'aborted'", "return 'failed'")),
+        (1, 2, 0),
+        {'arm_player_plays': 'write these words alone'},
     ),
 )

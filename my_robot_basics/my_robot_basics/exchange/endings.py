@@ -11,6 +11,8 @@ _IMPORTS = re.compile('<frozen importlib')
 """What a traceback has in each line about an import that has not ended."""
 _RUNS = re.compile(', in main$')
 """What ends the line of a traceback about the program's own function."""
+_ERROR = re.compile(r'[\w.]+(?:Error|Exception|Interrupt)\b')
+"""How the last line of a traceback begins, whose first lines may not have been kept."""
 TRY_SHUTDOWN = 'try_shutdown'
 """The name of the call, as a traceback shows it."""
 
@@ -32,6 +34,16 @@ def error_in(lines: Sequence[str]) -> str:
         return ''
     errors = (line for line in lines[starts[-1] + 1 :] if line[:1].isalpha())
     return next(errors, 'a traceback')
+
+
+def why_code(code: int | None, lines: Sequence[str]) -> str:
+    """Return advice about an exit code above 0 without an exception; '' for any other end."""
+    if not code or code < 0 or error_in(lines) or any(map(_ERROR.match, lines)):
+        return ''
+    return (
+        'no exception ended it, so main returns something, or calls sys.exit with it: return '
+        'nothing, or 0'
+    )
 
 
 def was_starting(code: int | None, lines: Sequence[str]) -> bool:

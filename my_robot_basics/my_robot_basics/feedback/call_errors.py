@@ -77,6 +77,11 @@ OF_CALLS = (
         to_do=', so write def main(args=None): an executable calls it without arguments',
     ),
     Case(
+        pattern='unrecognized arguments: .*--ros-args',
+        to_do=', so write parse_known_args() for parse_args(): rclpy.init() reads what '
+        'comes after --ros-args',
+    ),
+    Case(
         pattern="coroutine 'main' was never awaited",
         to_do=', so write def main without async: an executable calls it as a plain function',
     ),

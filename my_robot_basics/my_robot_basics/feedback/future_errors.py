@@ -18,6 +18,11 @@ OF_FUTURES = (
     Case(
         pattern="'Future' object (?:has no attribute|is not subscriptable)",
         to_do=', so take the answer out of the future with .result(), in the function that '
-        'add_done_callback calls: before that, there is no answer',
+        'add_done_callback calls, or with `await` in a coroutine: before that, there is no answer',
+    ),
+    Case(
+        pattern="'coroutine' object |str instance, coroutine found|iterable coroutine object",
+        to_do=', so put `await` before the call of the async function: without it, nothing in it '
+        'runs',
     ),
 )

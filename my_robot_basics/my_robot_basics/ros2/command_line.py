@@ -79,6 +79,8 @@ def parse(text: str, *, package: str, executable: str) -> CommandLine:
     if found := [word for word in words if set(word) <= _OF_A_SHELL]:
         hint = 'write one command that starts one node: no shell reads it'
         raise BadCommandLine(f'the word {found[0] or repr("")}', hint)
+    if any(word.startswith(':=') for word in words):
+        raise BadCommandLine('a space before :=', 'write no spaces around it: name:=value')
     if words[:4] != start:
         hint = f'begin with {shlex.join(start)}'
         raise BadCommandLine(shlex.join(words[:4]) or 'nothing', hint)

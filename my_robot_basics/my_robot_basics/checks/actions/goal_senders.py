@@ -15,7 +15,8 @@ from my_robot_basics.graph.watcher import Watcher
 
 WAITS = (
     'it waits inside a callback, and no answer is delivered meanwhile: use send_goal_async and '
-    'get_result_async, each with add_done_callback'
+    'get_result_async, each with add_done_callback, or `await` with the callback and the client '
+    'in one ReentrantCallbackGroup'
 )
 IS_TRUE = 'look at message.data: only True asks to cancel'
 EACH_TRUE = (

@@ -155,7 +155,7 @@ class NodeCommand:
             seen=student_text(shorten(repr(seen))),
             hint=_in_the_file(name, self.node_name)
             if self.line.options(*OPTIONS_OF_FILES)
-            else _in_the_line(name, value),
+            else remap_hints.for_a_parameter(self.line, name, value),
             cause=f'{name} has another value',
         )
         started = self._started(parameter_name=name)
@@ -165,7 +165,7 @@ class NodeCommand:
             seen=student_text(shorten(repr(started.parameter)))
             if started
             else 'rcl refuses a rule',
-            hint=_in_the_line(name, value),
+            hint=remap_hints.for_a_parameter(self.line, name, value),
             cause=f'the command line gives {name} another value',
         )
 
@@ -187,10 +187,6 @@ class NodeCommand:
             hint='the node takes its seed when it starts: give it in the command line',
             type_=JointState,
         )
-
-
-def _in_the_line(name: str, value: Any) -> str:
-    return f'give it with -p {name}:={value} after --ros-args, or in a YAML file'
 
 
 def _in_the_file(name: str, node_name: str) -> str:

@@ -1,4 +1,6 @@
-"""What is wrong with the remap rules of a command line, judged by the names they should give."""
+"""What is wrong with the remap rules and parameters of a command line, judged by their names."""
+
+import re
 
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.ros2.command_line import OPTIONS_OF_PARAMETERS, CommandLine
@@ -29,11 +31,20 @@ def for_a_name(line: CommandLine, node_name: str) -> str:
         return 'compare both names in the rules of the command line'
     if unfit := line.without_sign(*OPTIONS_OF_PARAMETERS):
         return f'a parameter is written name:=value: {shorten(unfit, 40)!r} is none'
+    if prefixed := next(filter(None, map(_without_prefix, _parameters(line))), ''):
+        return prefixed
     numbers = [rule for rule in rules.items() if rule[1][:1].isdigit()]
     if numbers:
         left, right = numbers[0]
         return f'-r sets names alone, so give the parameter with -p {left}:={right}'
     return _ENDED
+
+
+def for_a_parameter(line: CommandLine, name: str, value: object) -> str:
+    """What to try if a node's parameter does not have the value that it should: one clause."""
+    longer = [each for each in _parameters(line) if re.split('[:/]', each)[-1] == name]
+    prefixed = next(filter(None, map(_without_prefix, longer)), '')
+    return prefixed or f'give it with -p {name}:={value} after --ros-args, or in a YAML file'
 
 
 def for_a_topic(line: CommandLine, node_name: str, topic_name: str) -> str:
@@ -62,3 +73,20 @@ def for_a_topic(line: CommandLine, node_name: str, topic_name: str) -> str:
                 f'{namespace}/{right} here'
             )
     return f'compare the rule with the name that the topic has now, {topic_name}'
+
+
+def _parameters(line: CommandLine) -> list[str]:
+    """What is to the left of := in each parameter of the line."""
+    return [each.partition(':=')[0] for _, each in line.options(*OPTIONS_OF_PARAMETERS)]
+
+
+def _without_prefix(left: str) -> str:
+    """Advice to leave out the name of a node before a parameter's; '' if there is none."""
+    name = re.split('[:/]', left)[-1]
+    if name == left:
+        return ''
+    shown = shorten(left, 40)
+    return (
+        f'{shown} gives the node no {name}: the command line is of one node, so write '
+        f'the name of the parameter alone, -p {name}:=…'
+    )

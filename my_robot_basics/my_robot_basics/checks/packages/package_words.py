@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from my_robot_basics.exchange.endings import error_in, signal_name, why_crashed
+from my_robot_basics.exchange.endings import error_in, signal_name, why_code, why_crashed
 from my_robot_basics.feedback.errors import shorten
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.feedback.python_errors import hint_for_exception
@@ -14,8 +14,8 @@ _NO_CAUSE = re.compile('RuntimeWarning: Enable tracemalloc')
 _OWN_ERROR = re.compile('(?:Attribute|Name|UnboundLocal|Type|Key|Index|ZeroDivision)Error')
 """Errors that mistakes in a program raise, and Ctrl-C by itself does not."""
 CLEANLY = (
-    'in main, catch KeyboardInterrupt and ExternalShutdownException around rclpy.spin, and call '
-    'rclpy.try_shutdown() at the end'
+    'in main, catch KeyboardInterrupt and ExternalShutdownException around all that waits, such '
+    'as rclpy.spin, and call rclpy.try_shutdown() at the end'
 )
 
 
@@ -63,7 +63,7 @@ def why_not_clean(code: int | None, said: str) -> str:
             'correct this error first; if it comes only after Ctrl-C, which ends a wait for a '
             'future, look at future.done() before you use its result'
         )
-    return CLEANLY
+    return why_code(code, said.splitlines()) or CLEANLY
 
 
 def why_it_goes_on(told: Mapping[str, Any]) -> str:

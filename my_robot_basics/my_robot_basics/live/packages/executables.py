@@ -13,6 +13,7 @@ from my_robot_basics.exchange.endings import (
     is_clean,
     signal_name,
     was_starting,
+    why_code,
     why_crashed,
 )
 from my_robot_basics.live.output import notebook
@@ -98,6 +99,8 @@ def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
     code, last = each.process.code, error_in([*each.process.lines])
     end = _describe_exit(code)
     why = why_crashed(code, at_end=took is not None)
+    if took is signal.SIGINT:
+        why = why or why_code(code, [*each.process.lines])
     if took is None:
         if code == 0:
             return 'had ended by itself (exit code 0)'

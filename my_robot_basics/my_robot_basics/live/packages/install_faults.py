@@ -91,8 +91,17 @@ def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageF
     path = entry.module.replace('.', '/')
     names = (f'{path}.py', f'{path}/__init__.py')
     top = entry.module.partition('.')[0]
-    if not (site / top).exists() and top not in {name.partition('/')[0] for name in files.taken}:
-        return f'entry_points of setup.py has {line!r}, and there is no package {top}: correct it'
+    short_of = ''
+    if f'{package}/{path}.py' in files.taken:
+        short_of = (
+            f'entry_points of setup.py has {line!r}, and that module is in the package {package}: '
+            f'write {package}.{entry.module}:{entry.attr}'
+        )
+    is_installed = (site / top).exists() or (site / f'{top}.py').exists()  # also by py_modules
+    if not is_installed and top not in {name.partition('/')[0] for name in files.taken}:
+        return short_of or (
+            f'entry_points of setup.py has {line!r}, and there is no package {top}: correct it'
+        )
     here = next((site / name for name in names if (site / name).is_file()), None)
     if here is None:
         if any(name in files.taken for name in names):
@@ -114,6 +123,8 @@ def _fault_of_entry(entry: EntryPoint, package: str, site: Path, files: PackageF
     function = entry.attr.partition('.')[0]
     if function in set(_bound(tree)):
         return ''
+    if short_of:
+        return short_of
     functions = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
     close = [name for name in functions if name.lower() == function.lower()]
     for meant in [*close, *difflib.get_close_matches(function, functions)][:1]:

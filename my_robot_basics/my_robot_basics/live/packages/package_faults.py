@@ -24,6 +24,13 @@ NO_PYTHON = (ValueError, RecursionError, MemoryError)
 def fault_in_sources(package: str, files: PackageFiles) -> str:
     """Return what is wrong with a package's sources; '' if no fault is found before the build."""
     if 'package.xml' not in files.taken:
+        deeper = [name for name in files.taken if name.endswith('/package.xml')]
+        if len(deeper) == 1:
+            inner = short(f'{package}/{deeper[0].removesuffix("package.xml")}')
+            return (
+                f'package.xml is in {inner}, and has to be in {package}/: move all that is in '
+                f'{inner} up into {package}/'
+            )
         return (
             f'{package}/ has no package.xml, so it is no ROS package yet: write one, or begin '
             f'with `ros2 pkg create --build-type {BUILD_TYPE} {package}` in an empty folder'
