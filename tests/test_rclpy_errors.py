@@ -206,6 +206,21 @@ def test_only_a_whole_number_behind_the_value_of_a_parameter_may_be_a_decimal_co
     [
         ('AttributeError: ACCEPTED (line 12, in judge: return GoalResponse.ACCEPTED)', ACCEPT),
         (
+            "AttributeError: 'MoveArm_Result' object has no attribute 'status' (line 22, in end)",
+            ', so leave .result out: the status is beside the result, future.result().status',
+        ),
+        (
+            "TypeError: unhashable type: 'ClientGoalHandle' (line 20, in drive)",
+            ', so keep goal handles in a list, or in a dict with '
+            'bytes(goal_handle.goal_id.uuid) as the key',
+        ),
+        (
+            'TypeError: MoveArmClient.respond() takes 1 positional argument but 2 were given',
+            ', so write a parameter for each of them into its def, such as (self, request, '
+            'response) for a service, (self, message) for a subscription, (self, future) for '
+            'add_done_callback, and (self) for a timer',
+        ),
+        (
             'KeyError: 0 (line 27, in end: print(ENDS[future.result().status]))',
             ', so look at goal_handle.accepted first: a rejected goal has no result, and its '
             'status is 0',

@@ -24,8 +24,8 @@ RAISED = (
     'expected messages on /kinematics/joint_states, saw no message in 2 s: /arm has a publisher '
     'there and sends nothing, because its callback raised TypeError: Arm.publish() takes 0 '
     'positional arguments but 1 was given, so write a parameter for each of them into its def, '
-    'such as (self, request, response) for a service, (self, message) for a subscription, and '
-    '(self) for a timer'
+    'such as (self, request, response) for a service, (self, message) for a subscription, '
+    '(self, future) for add_done_callback, and (self) for a timer'
 )
 WITH_COLONS = {
     'expected [0.5236, -1.5708] rad for (30.0, -90.0) degrees, saw [30.0, -90.0]: these are '

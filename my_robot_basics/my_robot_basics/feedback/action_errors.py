@@ -49,6 +49,15 @@ OF_ACTIONS = (
         'once',
     ),
     Case(
+        pattern=r"'\w+_Result' object has no attribute 'status'",
+        to_do=', so leave .result out: the status is beside the result, future.result().status',
+    ),
+    Case(
+        pattern="unhashable type: 'ClientGoalHandle'",
+        to_do=', so keep goal handles in a list, or in a dict with '
+        'bytes(goal_handle.goal_id.uuid) as the key',
+    ),
+    Case(
         pattern=r'KeyError: 0 \(.*\.status\b',
         to_do=', so look at goal_handle.accepted first: a rejected goal has no result, and its '
         'status is 0',

@@ -158,7 +158,8 @@ BY_WORDS = (
     Case(
         pattern=rf'\b(?!(?:{CLASSES})\b)\w+\.(?!__)\w+\(\) takes \d+ positional arguments? but',
         to_do=', so write a parameter for each of them into its def, such as (self, request, '
-        'response) for a service, (self, message) for a subscription, and (self) for a timer',
+        'response) for a service, (self, message) for a subscription, (self, future) for '
+        'add_done_callback, and (self) for a timer',
     ),
     Case(
         pattern=r'callback should be either be callable',

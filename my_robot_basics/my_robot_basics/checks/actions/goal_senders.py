@@ -151,6 +151,6 @@ def how_to_cancel(
     if any(not each.is_accepted and each.received_ns > goal.received_ns for each in goals):
         return (
             'a rejected goal came in between, so keep the goal handle that was accepted, and call '
-            'its cancel_goal_async()'
+            'its cancel_goal_async(), also if you have cancelled an earlier goal'
         )
     return 'call cancel_goal_async() of the goal handle that was accepted'
