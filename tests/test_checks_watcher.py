@@ -26,14 +26,22 @@ def test_a_crowd_of_endpoints_fails_a_check(node, monkeypatch, spread):
     with Watcher() as here:
         assert graphs.wait_for_publisher(here, '/talk', timeout_sec=20.0)
         monkeypatch.setattr(watcher, 'MOST_ENDPOINTS', 80)
-        with pytest.raises(CheckFailed, match=r'expected at most 80 publishers.*saw \d+: create'):
+        with pytest.raises(CheckFailed, match=r'expected at most 80 nodes.*saw \d+: create'):
             here.spin_for(20.0)
 
 
 def test_a_crowd_of_services_fails_a_check(node, monkeypatch):
     monkeypatch.setattr(watcher, 'MOST_ENDPOINTS', 2)
-    with pytest.raises(CheckFailed, match='expected at most 2 publishers'):
+    with pytest.raises(CheckFailed, match='expected at most 2 nodes'):
         topic('/nowhere').wait_for()
+
+
+def test_a_crowd_of_names_of_nodes_fails_a_check(node, monkeypatch):
+    """A participant may announce as many as it likes, without an endpoint of any."""
+    names = [(f'n{number}', '/') for number in range(watcher.MOST_ENDPOINTS)]
+    monkeypatch.setattr(Node, 'get_node_names_and_namespaces', lambda self: names)
+    with pytest.raises(CheckFailed, match='expected at most 1,000 nodes'):
+        topic('/talk').wait_for()
 
 
 @pytest.mark.slow
@@ -85,9 +93,22 @@ def test_a_name_that_ros_refuses_fails_a_check(node, dds_name):
     made.close()
 
 
-def test_an_error_in_a_check_is_not_reported_as_a_bad_name_on_the_graph(node):
-    with pytest.raises(ValueError, match='wrong'), Watcher():
-        raise ValueError('wrong')
+def test_times_that_rclpy_cannot_read_fail_a_check(node, monkeypatch):
+    """DDS has negative durations; rclpy raises if an endpoint's QoS has one."""
+
+    def look_up(self, topic_name, no_mangle=False):
+        raise OverflowError('Total nanoseconds value is too large to store in C duration.')
+
+    node.create_publisher(String, '/talk', 1)
+    monkeypatch.setattr(Node, 'get_publishers_info_by_topic', look_up)
+    with pytest.raises(CheckFailed, match='QoS on the graph whose times are not negative'):
+        topic('/talk').record(seconds=2.0)
+
+
+@pytest.mark.parametrize('kind', [ValueError, OverflowError])
+def test_an_error_in_a_check_is_not_reported_as_a_bad_name_on_the_graph(node, kind):
+    with pytest.raises(kind, match='wrong'), Watcher():
+        raise kind('wrong')
 
 
 def test_a_watcher_waits_for_no_events():

@@ -176,6 +176,22 @@ def test_a_function_that_never_returns_fails_its_check_soon(rooms, student, chec
     assert not rooms.student_alive
 
 
+ALWAYS = 'from my_robot_basics.checks import student\nwhile True: student.call({!r})'
+
+
+def test_time_that_the_students_code_takes_for_replies_is_told_apart(
+    rooms, student, check, monkeypatch
+):
+    """Each reply comes in time, and all together keep the check from its end."""
+    monkeypatch.setattr(module, 'CHECK_TIMEOUT_SEC', 3.0)
+    student(rooms, 'import time\ndef soon(): return 1\ndef late(): return time.sleep(1.0) or 1')
+    slow, quick = check(rooms, ALWAYS.format('late')), check(rooms, 'while True: pass')
+    assert slow.timed_out
+    assert quick.timed_out
+    assert (slow.replies_sec > 0.0, quick.replies_sec) == (True, 0.0)
+    assert check(rooms, "from my_robot_basics.checks import student; student.call('soon')")
+
+
 LITERALS = {
     "'a'": True, '"a"': True, r"'\''": True, r"'\\'": True, "''": True, f"'{'x' * 60_000}'": True,
     "'a' 'b'": False, "'a' + 'b'": False, "'": False, '': False, "'a''": False, "'a\n'": False,

@@ -2,6 +2,7 @@
 
 import nbformat
 import pytest
+from my_robot_basics.validate.kernels.limits import REPLIES_SEC
 from my_robot_basics.validate.kernels.outputs import CellRun
 from my_robot_basics.validate.verdicts.verdict import (
     Verdict,
@@ -157,6 +158,13 @@ NO_VERDICT = {
     'no reply': (ended(status=None), 'it did not report its end'),
     'aborted': (ended(status='aborted'), 'it did not report its end'),
 }  # fmt: skip
+
+
+def test_a_check_without_end_fails_if_the_students_code_took_the_time(cell):
+    run = failing('KeyboardInterrupt', '', timed_out=True, replies_sec=REPLIES_SEC)
+    verdict = judge(cell, run, [])
+    assert (verdict.outcome, verdict.score) == ('failed', 0.0)
+    assert verdict.reason.startswith('the check has not ended, because your code took over 90 s')
 
 
 BROKEN = 'the test kernel could not be interrupted', 'the test kernel crashed with SIGABRT'

@@ -8,6 +8,7 @@ from pathlib import Path
 from my_robot_basics.exchange.endings import signal_name
 from my_robot_basics.session.domain import Claim, claim
 from my_robot_basics.session.errors import LiveError
+from my_robot_basics.session.pressure import Stopwatch
 from my_robot_basics.validate.kernels.limits import CHECK_TIMEOUT_SEC, REPLY_TIMEOUT_SEC
 from my_robot_basics.validate.kernels.outputs import CellRun
 from my_robot_basics.validate.kernels.questions import (
@@ -54,6 +55,7 @@ class GradingRooms:
         self._claim: Claim | None = None
         self._kernels: list[GradingKernel] = []
         self._doubts = [] if doubts is None else doubts
+        self._replies_sec = 0.0
 
     async def __aenter__(self) -> 'GradingRooms':
         """Start both kernels, and check that a message from one reaches the other."""
@@ -107,9 +109,11 @@ class GradingRooms:
         Raises RoomFailure if the cell failed and a process of the student's was ended by something
         else than the student's code, as far as is known.
         """
+        self._replies_sec = 0.0
         run = await self._test.run(
             source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
         )
+        run.replies_sec = self._replies_sec if run.timed_out else 0.0
         if run.died and (ended := await self._test.ending()):
             run.crash = ended.crash
         if not run.ran_to_end:
@@ -144,12 +148,13 @@ class GradingRooms:
 
     async def _ask_student(self, request: str) -> str:
         """Pass a check's request to the student's kernel; return the reply, of a bounded size."""
+        watch, cpu_sec = Stopwatch(), self.student_cpu_sec
+        before_sec = cpu_sec() or 0.0
         run = await self._student.run(
-            '',
-            timeout_sec=REPLY_TIMEOUT_SEC,
-            expressions=as_expression(request),
-            used_sec=self.student_cpu_sec,
+            '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request), used_sec=cpu_sec
         )
+        used_sec = (cpu_sec() or 0.0) - before_sec
+        self._replies_sec += min(watch.wall_sec(), max(used_sec, watch.free_sec()))
         return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
 
     async def _open(self) -> None:

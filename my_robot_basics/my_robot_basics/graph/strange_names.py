@@ -1,4 +1,4 @@
-"""Names on the graph that DDS allows and ROS does not: rclpy refuses to look them up."""
+"""What DDS allows on the graph and ROS does not: rclpy raises if it should look it up."""
 
 from collections.abc import Iterator
 
@@ -13,6 +13,18 @@ def strange_name(node: Node) -> str:
         return next((name for name in _names(node) if not _is_allowed(name)), '')
     except UnicodeDecodeError:
         return ''
+
+
+def has_strange_duration(node: Node) -> bool:
+    """Whether an endpoint that the node sees now announces QoS with a negative time."""
+    topic_names = [name for name, _ in node.get_topic_names_and_types()]
+    try:
+        for look_up in node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic:
+            for name in topic_names:
+                look_up(name)
+    except OverflowError:
+        return True
+    return False
 
 
 def _names(node: Node) -> Iterator[str]:

@@ -15,7 +15,7 @@ from my_robot_basics.graph.cell_context import context_of_cell, new_context
 from my_robot_basics.graph.ignored_callback_group import IgnoredCallbackGroup
 from my_robot_basics.graph.lean_executor import LeanExecutor
 from my_robot_basics.graph.snapshot import GraphSnapshot
-from my_robot_basics.graph.strange_names import strange_name
+from my_robot_basics.graph.strange_names import has_strange_duration, strange_name
 from my_robot_basics.session import classroom, interactions
 from my_robot_basics.session.environment import set_meanwhile
 from my_robot_basics.session.pressure import free_turns
@@ -24,8 +24,8 @@ TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
 HIDDEN = '_'
 """Names of the course's own nodes start with this; checks and counts ignore these nodes."""
 MOST_ENDPOINTS = 1_000
-"""The limit of publishers, subscriptions and services in a domain. Thirty nodes have about 400;
-with many thousands, reading the graph would take too long."""
+"""The limit of nodes, publishers, subscriptions and services in a domain. Thirty nodes have about
+430; with many thousands, reading the graph would take too long."""
 BY_RCLPY = 'make nodes, topics and services with rclpy alone, by names of ASCII letters'
 _REFUSES = ValueError, NameValidationException
 """What rclpy raises if it should look up a name that rclpy itself could not have created."""
@@ -83,8 +83,9 @@ class Watcher:
         return self
 
     def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
-        """Leave the domain. Raises CheckFailed if names on the graph could not be read."""
+        """Leave the domain. Raises CheckFailed if names or QoS on the graph could not be read."""
         refused = strange_name(self.node) if isinstance(error, _REFUSES) else ''
+        is_misdated = isinstance(error, OverflowError) and has_strange_duration(self.node)
         self._executor.shutdown()
         for node in self._nodes:
             node.destroy_node()
@@ -95,6 +96,12 @@ class Watcher:
             fail(
                 expected='names and types on the graph that are text',
                 seen='bytes that are not UTF-8',
+                hint=BY_RCLPY,
+            )
+        if is_misdated:
+            fail(
+                expected='QoS on the graph whose times are not negative',
+                seen='one that rclpy cannot read',
                 hint=BY_RCLPY,
             )
         if refused:
@@ -162,11 +169,13 @@ class Watcher:
             return
         topic_names = [name for name, _ in self.node.get_topic_names_and_types()]
         count = len(self.node.get_service_names_and_types())
+        # a participant may announce names of nodes that have no endpoint
+        count += len(self.node.get_node_names_and_namespaces())
         for look_up in self.node.count_publishers, self.node.count_subscribers:
             count += sum(map(look_up, topic_names))
         if count > MOST_ENDPOINTS:
             fail(
-                expected=f'at most {MOST_ENDPOINTS:,} publishers, subscriptions and services',
+                expected=f'at most {MOST_ENDPOINTS:,} nodes, topic endpoints and services',
                 seen=f'{count:,}',
                 hint='create each of them once, not in an endless loop or a callback',
             )

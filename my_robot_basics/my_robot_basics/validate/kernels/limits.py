@@ -20,6 +20,9 @@ STUDENT_CELLS_BUDGET_SEC = 120.0
 """For all student cells of a notebook together: grading a class has to end."""
 REPLY_TIMEOUT_SEC = 10.0
 """How long the student's kernel may take to answer one request of a check: as for a cell."""
+REPLIES_SEC = 90.0
+"""For a check that does not end in CHECK_TIMEOUT_SEC: if replies took this long together, that is
+the reason, and not a failure of the grader."""
 CHECK_TIMEOUT_SEC = 150.0
 """A check has its own time limits, which are longer on a busy machine; this one ends a check in
 which they fail."""

@@ -41,6 +41,8 @@ class CellRun:
     """After how many seconds *Validate* gave up student code for which grading waits longer."""
     given_up: str = ''
     """Why *Validate* gave up a check for which grading waits longer; else empty."""
+    replies_sec: float = 0.0
+    """How long the student's code took for its replies to a check that the grader gave up."""
     died: bool = False
     cut_off: bool = False
     """Whether its kernel had to be killed because nothing more could be received from it."""

@@ -10,6 +10,7 @@ from nbformat import NotebookNode
 
 from my_robot_basics.feedback import hidden
 from my_robot_basics.validate.errors import RoomFailure
+from my_robot_basics.validate.kernels.limits import REPLIES_SEC
 from my_robot_basics.validate.kernels.outputs import CellRun
 from my_robot_basics.validate.lessons.cells import KEY, graded_id, role
 from my_robot_basics.validate.verdicts.second_look import DISTURBED, STARVED
@@ -23,6 +24,11 @@ NOTE = 'note: '
 """A printed line of a check that starts with this costs no points and is shown to the student."""
 UNGRADED = 'not graded, a person has to look at it: '
 """How the reason begins if the grader itself failed."""
+TOO_SLOW = (
+    'the check has not ended, because your code took over '
+    f'{REPLIES_SEC:.0f} s to answer what it asks: look for a sleep or a long loop in what it calls'
+)
+"""The reason of a failed check that had to wait for the student's code nearly all the time."""
 _FAILURES = ('CheckFailed', 'PartlyRight', STARVED, DISTURBED, 'AssertionError')
 _SHOWN = ('display_data', 'stream')
 _BROKEN = re.compile('the test kernel (crashed with|could not be interrupted)')
@@ -68,6 +74,8 @@ def judge(cell: NotebookNode, run: CellRun | None, own: Iterable[tuple[str, Cell
     notes = tuple(_notes(run))
     if run.ran_to_end:
         return Verdict(name, outcome='passed', points=points, reason='', notes=notes)
+    if run.replies_sec >= REPLIES_SEC:
+        return Verdict(name, 'failed', points, reason=TOO_SLOW, notes=notes)
     if run.error is None or run.error.ename not in _FAILURES:
         raise RoomFailure(f'the check `{name}` came to no verdict: {_what_happened(run)}')
     reason = run.error.evalue.strip() or 'the check failed and gave no reason'
