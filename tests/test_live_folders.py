@@ -4,14 +4,19 @@ import os
 import threading
 import time
 import zipfile
+from contextlib import contextmanager
 from datetime import UTC, datetime
 
 import pytest
 
 from grader.collect import live_folders
+from grader.collect.live_folders import LiveFolder
 from grader.collect.matching import match
+from grader.collect.unpack_limits import UnpackLimits
 from grader.collect.uploads import read_inbound_entry, read_upload
+from grader.common.files import first_names
 from grader.notebook.submission import SECRET, TIMESTAMP
+from grader.serving import inbound as serving_inbound
 
 ALICE, BOB = 4_001, 4_002
 STRANGER = 4_003
@@ -262,6 +267,34 @@ def test_a_student_with_too_many_files_does_not_affect_other_students(
     whose, reasons = collected(inbound, tmp_path)
     assert whose["bob's"] == 'bob'
     assert reasons == ['too many files: this one and more were not read']
+
+
+def test_a_folder_with_millions_of_files_is_not_listed_to_its_end(inbound, tmp_path, monkeypatch):
+    folder = submit(inbound, 'alice', os.geteuid())
+    for number in range(40):
+        (folder / f'{number:02}.py').write_text('x')
+    (folder / 'deeper').mkdir()
+    scan, listed = os.scandir, []
+
+    @contextmanager
+    def counted(place):
+        with scan(place) as entries:
+            yield (listed.append(each.name) or each for each in entries)
+
+    monkeypatch.setattr(os, 'scandir', counted)
+    descriptor = os.open(folder, os.O_RDONLY)
+    assert len(first_names(descriptor, 7)) == len(listed) == 7
+    assert first_names(descriptor, 100) == sorted(os.listdir(folder))
+    listed.clear()
+    live = LiveFolder(tmp_path, UnpackLimits(files=9, bytes=1_000), lambda parts: False)
+    found = list(live.read(folder, ()))
+    assert (len(found), len(listed)) == (10, 10)
+    assert found[-1].problem.startswith('too many files')
+    listed.clear()
+    monkeypatch.setattr(serving_inbound, 'MOST_FILES', 5)
+    tree = list(serving_inbound._tree(inbound, folder.name, os.lstat(folder)))
+    assert (len(tree), len(listed)) == (6, 5)
+    os.close(descriptor)
 
 
 @pytest.fixture

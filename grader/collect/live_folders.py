@@ -20,6 +20,7 @@ from grader.collect.incoming import Incoming
 from grader.collect.unpack_limits import OF_USER, ONE, UnpackLimits
 from grader.common.dates import utc_of
 from grader.common.errors import MACHINE_FULL
+from grader.common.files import first_names
 
 LINK = 'a link: only files are taken'
 DEVICE = 'a device or the like: only files are taken'
@@ -69,7 +70,8 @@ class LiveFolder:
             yield from self._entry(_outermost(descriptor, (), trusted), name)
 
     def _entries(self, within: _ParentFolder) -> Iterator[Incoming]:
-        for name in sorted(os.listdir(within.descriptor)):
+        # one more than may be read: it gets the reason
+        for name in first_names(within.descriptor, max(0, self.left.files + 1)):
             yield from self._entry(within, name)
 
     def _entry(self, within: _ParentFolder, name: str) -> Iterator[Incoming]:

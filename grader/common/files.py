@@ -1,8 +1,9 @@
-"""Write files atomically: completely or not at all, whatever happens meanwhile."""
+"""Write files atomically, completely or not at all; list folders of any size."""
 
 import contextlib
 import os
 from datetime import datetime
+from itertools import islice
 from pathlib import Path
 
 
@@ -37,3 +38,12 @@ def make_folder_for(time: datetime, parent: Path) -> Path:
             number += 1
         else:
             return folder
+
+
+def first_names(descriptor: int, most: int) -> list[str]:
+    """Return the sorted names in an open folder; `most` of them if it has more.
+
+    A folder with millions of files is not read to its end.
+    """
+    with os.scandir(descriptor) as listed:
+        return sorted(each.name for each in islice(listed, most))

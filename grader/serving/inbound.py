@@ -8,10 +8,12 @@ import time
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 
 from grader.collect.archive_entries import MAX_PARTS
 from grader.common.dates import utc_of
+from grader.common.files import first_names
 from grader.common.text import storable
 from grader.notebook.submission import SECRET
 from grader.serving.rounds import Rounds
@@ -157,16 +159,27 @@ def _tree(folder: Path, name: str, status: os.stat_result) -> Iterator[tuple[str
     yield '', status
     if not stat.S_ISDIR(status.st_mode):
         return
-    left = MOST_FILES
     descriptor = os.open(folder / name, _FLAGS)
     try:
-        for path, folders, files, inside in os.fwalk('.', dir_fd=descriptor):
-            for each in sorted([*folders, *files]):
-                left -= 1
-                if left < 0:
-                    return
-                yield f'{path}/{each}', os.lstat(each, dir_fd=inside)
-            if path.count('/') >= MAX_PARTS - 1:  # what is deeper is never taken
-                folders.clear()
+        yield from islice(_inside(descriptor, '.'), MOST_FILES)
     finally:
         os.close(descriptor)
+
+
+def _inside(descriptor: int, path: str) -> Iterator[tuple[str, os.stat_result]]:
+    names = first_names(descriptor, MOST_FILES)
+    found = [(name, os.lstat(name, dir_fd=descriptor)) for name in names]
+    yield from ((f'{path}/{name}', status) for name, status in found)
+    if path.count('/') >= MAX_PARTS - 1:  # what is deeper is never taken
+        return
+    for name, status in found:
+        if not stat.S_ISDIR(status.st_mode):
+            continue
+        try:
+            inner = os.open(name, _FLAGS, dir_fd=descriptor)
+        except PermissionError:
+            continue  # it is reported when the entry is read
+        try:
+            yield from _inside(inner, f'{path}/{name}')
+        finally:
+            os.close(inner)
