@@ -127,6 +127,30 @@ def test_an_archive_bomb_of_one_student_leaves_room_for_others(source, tmp_path,
         assert 'more files in it than are unpacked' in found[f'{student}.zip']
 
 
+MANY = {
+    'Moodle': ('Ada Lovelace_11_assignsubmission_file_/{}.zip', 'Zoe_12_assignsubmission_file_'),
+    'Canvas': ('lovelaceada_1234_5678_{}.zip', 'zoeang_1235_5679_'),
+}
+
+
+@pytest.mark.parametrize(('many', 'other'), MANY.values(), ids=MANY)
+def test_many_archives_of_one_student_leave_room_for_others(
+    source, tmp_path, monkeypatch, many, other
+):
+    """Twenty archives of 5,000 empty files each would use up what a class may have."""
+    for name, files in ('ONE', 20), ('OF_USER', 40), ('ALL', 90):
+        monkeypatch.setattr(uploads, name, {'files': files, 'bytes': 10_000})
+    last = f'{other}/x.zip' if '/' in many else f'{other}x.zip'
+    for path in *(many.format(number) for number in range(8)), last:
+        (source / path).parent.mkdir(exist_ok=True)
+        files = {f'f{number}_py': '' for number in range(18)}
+        (source / path).write_bytes(zip_of(**(files if path != last else {'a_ipynb': 'x'})))
+    found = seen(source, tmp_path)
+    assert found[f'{last}/a.ipynb'] == b'x'
+    taken = {path.rpartition('/')[0] for path in found if path.endswith('.py')}
+    assert len(taken) == 3  # four files of the third one
+
+
 def test_all_archives_of_an_upload_share_one_size_limit(source, tmp_path, monkeypatch):
     monkeypatch.setattr(uploads, 'ALL', {'files': 100, 'bytes': 1_000, 'archive_bytes': 10_000})
     for student in ('ada', 'bob'):

@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Literal
@@ -149,6 +150,18 @@ def _is_class(found: re.Match[str]) -> bool:
     number, other = found['number'], found.groupdict().get('upload', '')
     of_years = len(number) == len(other) == 4 and int(other) - int(number) in (0, 1)
     return of_years or is_nobody(found['student'])
+
+
+def owner_in(parts: Sequence[str]) -> tuple[str, ...]:
+    """Return what all paths of files have in common that a platform names after one student.
+
+    () if no platform does, or if a folder may be that of a class.
+    """
+    last = len(parts) - 1
+    for at, part in enumerate(parts):
+        if (label := label_in(part)) and (at == last or not label.platform.may_be_class):
+            return *parts[:at], label.platform.name, label.student, label.number
+    return ()
 
 
 def _time(platform: Platform, found: re.Match[str]) -> datetime | None:

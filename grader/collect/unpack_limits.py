@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 ONE = {'files': 5_000, 'bytes': 200_000_000}
 """Limits for one student's archive or folder, which may include the course's whole bundle."""
 OF_USER = {'files': 20_000, 'bytes': 1_000_000_000}
 """The same for all folders of one user of this machine, and for all their archives: the exchange
-keeps every submission, and sparse files take no space on their owner's disk."""
+keeps every submission, and sparse files take no space on their owner's disk. Also for all archives
+that a student has handed in on a course platform."""
 
 
 @dataclass
@@ -45,14 +46,20 @@ class UnpackLimits:
         return ''
 
     @contextmanager
-    def lend(self, *, files: int, bytes: int) -> Iterator['UnpackLimits']:
-        """Yield limits for one archive or folder; subtract what the block has used of them."""
+    def lend(self, *others: 'UnpackLimits', files: int, bytes: int) -> Iterator['UnpackLimits']:
+        """Yield limits for one archive or folder; subtract what the block has used of them.
+
+        It is within the `others`, too, and subtracted from them.
+        """
         left = self.part(files=files, bytes=bytes)
+        for other in others:
+            left = UnpackLimits(*map(min, astuple(left), astuple(other)))
         before = replace(left)
         try:
             yield left
         finally:
-            self._subtract_used(before, left)
+            for each in (self, *others):
+                each._subtract_used(before, left)
 
     def _subtract_used(self, part: 'UnpackLimits', left: 'UnpackLimits') -> None:
         self.files -= part.files - left.files

@@ -13,7 +13,7 @@ from grader.collect.archives import unpack
 from grader.collect.incoming import Incoming, as_json, from_json
 from grader.collect.live_folders import LiveFolder
 from grader.collect.name_forms import strip_late_mark
-from grader.collect.platforms import label_in
+from grader.collect.platforms import label_in, owner_in
 from grader.collect.unpack_limits import OF_USER, ONE, UnpackLimits
 from grader.common.errors import CourseError
 from grader.common.parsing import Limits, ParsingFailed, parse
@@ -124,14 +124,14 @@ class _Opener:
         self, found: Iterator[Incoming], aside: Path, left: UnpackLimits
     ) -> Iterator[Incoming]:
         """Yield files; for an archive, the files in it."""
-        of_users: defaultdict[str, UnpackLimits] = defaultdict(lambda: UnpackLimits(**OF_USER))
+        of_owners: defaultdict[object, UnpackLimits] = defaultdict(lambda: UnpackLimits(**OF_USER))
         for each in found:
             if each.problem or each.is_litter or not ARCHIVE.search(each.parts[-1]):
                 yield from self.unpack_nested(each, aside, left, nested=1)
             else:
-                whole = of_users[each.login] if each.login else left
-                with whole.lend(**ONE) as part:
-                    name = each.parts[-1]
+                name, owner = each.parts[-1], each.login or owner_in(each.parts)
+                within = () if each.login else (left,)
+                with (of_owners[owner] if owner else left).lend(*within, **ONE) as part:
                     yield from self.read_in_process(
                         'unpack_nested', each, name, aside, part, LIMITS_OF_ONE
                     )
