@@ -12,9 +12,18 @@ from rclpy.node import Node
 rclpy.init()
 node = Node('idle')
 """
+HISTORY = """
+import tempfile, threading
+from IPython.core.interactiveshell import InteractiveShell
+from traitlets.config import Config
+file = f'{tempfile.mkdtemp()}/history.sqlite'
+shell = InteractiveShell(config=Config(HistoryManager={'hist_file': file}))
+assert 'IPythonHistorySavingThread' in [thread.name for thread in threading.enumerate()]
+"""
 NOTHING_COMES = {
     'nothing': ('', 0, []),
     'our own threads': ('import my_robot_basics.live.nodes.runner', 0, []),
+    "IPython's thread for the history of cells": (HISTORY, 0, []),
     'a node without a timer': (NODE, 0, ['/idle']),
     'a node of the course': (NODE.replace('idle', '_idle'), 0, []),
     'a timer that is cancelled': (NODE + 'node.create_timer(1, print).cancel()', 0, ['/idle']),

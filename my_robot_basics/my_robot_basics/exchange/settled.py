@@ -16,6 +16,8 @@ import psutil
 
 _OURS = ('ipykernel', 'my_robot_basics')
 """Packages whose threads and tasks create no endpoint by themselves."""
+_HISTORY = 'IPython.core.history'
+"""Its thread stores the cells that have run, in each kernel of JupyterLab."""
 _FIRED_SEC = 2.0
 """A timer counts as fired when its period and this much time have passed."""
 
@@ -49,7 +51,8 @@ def _has_threads() -> bool:
 def _is_ours(thread: threading.Thread) -> bool:
     target: Callable[[], object] | None = getattr(thread, '_target', None)
     module = type(thread).__module__ if target is None else getattr(target, '__module__', '')
-    return thread is threading.main_thread() or f'{module}'.partition('.')[0] in _OURS
+    is_of_kernel = module == _HISTORY or f'{module}'.partition('.')[0] in _OURS
+    return thread is threading.main_thread() or is_of_kernel
 
 
 def _has_processes() -> bool:
