@@ -200,11 +200,11 @@ COUNTED = (
 
 OF_STUDENTS = {
     'expected elbow_up of [1.1, -1.2] rad for the target (1, 2), saw [1.0, 2.0]: keep both keys': (
-        '预期：目标 (1, 2) 的 elbow_up 为 [1.1, -1.2] rad；实际：[1.0, 2.0]。两个键都要保留'
+        '预期：目标点 (1, 2) 的 elbow_up 为 [1.1, -1.2] rad；实际：[1.0, 2.0]。两个键都要保留'
     ),
     'expected reachable to be True for the target (1, 2) with z = 0.7, saw False: z does not '
     'matter: look at x and y of the target alone': (
-        '预期：z = 0.7 的目标 (1, 2) 的 reachable 为 True；实际：False。'
+        '预期：z = 0.7 的目标点 (1, 2) 的 reachable 为 True；实际：False。'
         'z 无关紧要：只看目标点的 x 和 y'
     ),
     '`late` arrives (a topic takes any number of publishers); `other_type` does not arrive (name '
