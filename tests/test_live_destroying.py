@@ -83,3 +83,13 @@ def test_a_node_that_has_overwritten_its_logger_leaves_the_graph(run):
     live.stop(OwnLogger)
     assert graph().nodes() == ('/speaker',)
     assert speaker.logger.name == 'speaker.voice'
+
+
+@pytest.mark.filterwarnings('error::pytest.PytestUnhandledThreadExceptionWarning')
+def test_a_node_that_a_cell_has_destroyed_is_replaced(run):
+    former = run(Speaker)
+    former.destroy_node()
+    second = run(Speaker)
+    second.destroy_node()
+    live.stop(Speaker)
+    assert graph().nodes() == ()

@@ -77,6 +77,23 @@ def test_a_cell_that_spins_says_how_to_stop_and_how_to_go_on(lesson):
     )
 
 
+def test_a_constructor_that_spins_says_how_to_go_on(lesson):
+    lesson.run(
+        f'{SILENT}\nclass Spinning(Silent):\n    def __init__(self):\n'
+        '        super().__init__()\n        rclpy.spin(self)'
+    )
+    cell = lesson.send('run(Spinning)')
+    assert lesson.wait_for(lambda: '■ (Interrupt the kernel)' in cell.stdout)
+    lesson.manager.interrupt_kernel()
+    lesson.wait_for(lambda: cell.done)
+    assert ' '.join(cell.error.split()) == (
+        'rclpy.spin was interrupted, and silent is stopped. To go on, leave rclpy.spin out of '
+        '__init__, and run the cells again: run spins a node in the background when its '
+        'constructor has returned.'
+    )
+    assert lesson.run('node = run(Silent)').error is None
+
+
 PROGRAM = f"""{SILENT}
 rclpy.init()
 node = Silent()

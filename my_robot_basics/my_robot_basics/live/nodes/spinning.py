@@ -5,6 +5,7 @@ In a program, Ctrl-C ends `rclpy.spin`; in a cell, ■ does, with the help of
 """
 
 import functools
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -87,6 +88,12 @@ def _explaining_spin(spin: Callable[..., None]) -> Callable[..., None]:
             spin(node, executor)
         except KeyboardInterrupt:
             destroy(node)
+            if _is_in_constructor(node):
+                raise SpinInterrupted(
+                    f'rclpy.spin was interrupted, and {name} is stopped. To go on, leave '
+                    'rclpy.spin out of __init__, and run the cells again: run spins a node in '
+                    'the background when its constructor has returned.'
+                ) from None
             raise SpinInterrupted(
                 f'rclpy.spin was interrupted, and {name} is stopped. To go on, write {made} '
                 f'in place of the lines that make {name} and spin it, and run this cell again: '
@@ -94,3 +101,14 @@ def _explaining_spin(spin: Callable[..., None]) -> Callable[..., None]:
             ) from None
 
     return explaining_spin
+
+
+def _is_in_constructor(node: Node) -> bool:
+    """Whether the caller is called, directly or not, by the constructor of that node."""
+    frame = sys._getframe()
+    while caller := frame.f_back:
+        values = caller.f_locals.values() if caller.f_code.co_name == '__init__' else ()
+        if any(value is node for value in values):
+            return True
+        frame = caller
+    return False

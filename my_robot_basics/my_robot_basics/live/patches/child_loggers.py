@@ -28,7 +28,12 @@ def remember_child_loggers() -> None:
 
 
 def unregister_child_loggers(node: Node) -> None:
-    """Remove a node's child loggers, and their children, from `/rosout`."""
+    """Remove a node's child loggers, and their children, from `/rosout`.
+
+    Do nothing for a node that a cell has destroyed itself: its handle no longer has their name.
+    """
+    if not node.handle.pointer:
+        return
     logger_name = node.handle.logger_name()  # a student's class may have overwritten its logger
     for child, name in list(_nodes.items()):
         if name == logger_name:
