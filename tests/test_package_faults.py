@@ -36,6 +36,16 @@ def test_a_crash_in_a_notebook_is_reported_with_the_same_cause_as_in_feedback():
     assert said == f'had ended by itself (by signal {signal.SIGRTMIN + 1})'
 
 
+def test_an_exception_in_a_notebook_is_reported_with_the_same_hint_as_in_feedback():
+    raised = (
+        "rclpy.exceptions.InvalidParameterTypeException: Trying to set parameter 'targets' to "
+    )
+    raised += "'[1.2]' of type 'DOUBLE_ARRAY', expecting type 'BYTE_ARRAY': targets"
+    process = types.SimpleNamespace(code=1, lines=['Traceback (most recent call last):', raised])
+    said = executables.how_it_ended(types.SimpleNamespace(process=process), None)
+    assert said.startswith(f'had ended by itself (exit code 1): {raised}, so declare it with')
+
+
 @pytest.mark.parametrize('by', [signal.SIGSEGV, signal.SIGABRT])
 def test_a_crash_after_ctrl_c_is_attributed_to_a_thread_that_still_spins(by):
     process = types.SimpleNamespace(code=-by, lines=[])

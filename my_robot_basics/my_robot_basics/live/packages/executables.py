@@ -16,6 +16,7 @@ from my_robot_basics.exchange.endings import (
     why_code,
     why_crashed,
 )
+from my_robot_basics.feedback.python_errors import hint_for_exception
 from my_robot_basics.live.output import notebook
 from my_robot_basics.live.output.panel import Panel, PanelEntry
 from my_robot_basics.live.packages.package_build import executables_of, prefix_of
@@ -105,6 +106,7 @@ def how_it_ended(each: Executable, took: signal.Signals | None) -> str:
         if code == 0:
             return 'had ended by itself (exit code 0)'
         if last or why:
+            last += hint_for_exception(last)
             return f'had ended by itself ({end}): {why or last}'
         return f'had ended by itself ({end})'
     if took is signal.SIGINT and is_clean(code, [*each.process.lines]):
