@@ -109,10 +109,8 @@ class GradingRooms:
         Raises RoomFailure if the cell failed and a process of the student's was ended by something
         else than the student's code, as far as is known.
         """
-        self._replies_sec = 0.0
-        run = await self._test.run(
-            source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=self._ask_student
-        )
+        self._replies_sec, ask = 0.0, self._ask_student
+        run = await self._test.run(source, timeout_sec=CHECK_TIMEOUT_SEC, on_input=ask)
         run.replies_sec = self._replies_sec if run.timed_out else 0.0
         if run.died and (ended := await self._test.ending()):
             run.crash = ended.crash
@@ -149,12 +147,12 @@ class GradingRooms:
     async def _ask_student(self, request: str) -> str:
         """Pass a check's request to the student's kernel; return the reply, of a bounded size."""
         watch, cpu_sec = Stopwatch(), self.student_cpu_sec
-        before_sec = cpu_sec() or 0.0
+        before = cpu_sec() or 0.0
         run = await self._student.run(
             '', timeout_sec=REPLY_TIMEOUT_SEC, expressions=as_expression(request), used_sec=cpu_sec
         )
-        used_sec = (cpu_sec() or 0.0) - before_sec
-        self._replies_sec += min(watch.wall_sec(), max(used_sec, watch.free_sec()))
+        used_sec = max((cpu_sec() or 0.0) - before, watch.free_sec())
+        self._replies_sec += min(watch.wall_sec(), used_sec)
         return reply_of(run, within_sec=REPLY_TIMEOUT_SEC)
 
     async def _open(self) -> None:
@@ -192,8 +190,6 @@ class GradingRooms:
 
     async def _prepare_test(self) -> None:
         await self._test.start()
-        # a participant that stays would go on to see the programs of a package that were killed,
-        # for five seconds; and outside a sandbox, it would leave shared memory behind
         stays = self._sandbox and not any(file.is_dir() for file in self._extra_files)
         await self._prepare(self._test, TEST_STAYS if stays else TEST_RECEIVES)
 
