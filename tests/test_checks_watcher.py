@@ -3,7 +3,7 @@
 import pytest
 from grade_cell import grade_cell
 from my_robot_basics.checks import CheckFailed, topic
-from my_robot_basics.graph import cell_context, earlier_waits, graphs, watcher
+from my_robot_basics.graph import graphs, watcher
 from my_robot_basics.graph.rmw import LatchedSubscription
 from my_robot_basics.graph.watcher import Watcher
 from rclpy.node import Node
@@ -142,25 +142,6 @@ def test_watchers_of_a_cell_share_a_participant_until_the_cell_ends(node, end_ce
     assert not first.context.ok()
     with Watcher(shared=True) as fourth:
         assert fourth.context is not first.context
-
-
-def test_a_participant_that_stays_serves_all_cells_and_each_cell_waits_anew(node, monkeypatch):
-    monkeypatch.setattr(cell_context, '_stays', False)
-    with grade_cell(monkeypatch) as end:
-        stays = cell_context.stay()
-        with Watcher(shared=True) as first:
-            assert first.context is stays
-            assert first.spin_until(
-                lambda: '/talker' in graphs.node_names(first.node), timeout_sec=10
-            )
-            earlier_waits.remember(stays, 'publishers', 1)
-        end()
-        with Watcher(shared=True) as second:
-            assert second.context is stays
-            assert '/talker' in graphs.node_names(second.node)
-            assert not earlier_waits.is_known(stays, 'publishers', 1)
-        monkeypatch.setattr(cell_context, '_stays', False)
-    assert not stays.ok()
 
 
 def test_a_shared_participant_that_was_shut_down_is_replaced(end_cell):

@@ -46,13 +46,6 @@ def check(loop):
 
 
 IMPORT = 'from my_robot_basics.checks import student\n'
-PARTICIPANT = """
-from my_robot_basics.graph.watcher import Watcher
-with Watcher(shared=True) as watcher:
-    publisher, = watcher.node.get_publishers_info_by_topic('/parameter_events')[:1]
-    print(publisher.endpoint_gid[:12])
-"""
-"""Prints which DDS participant a check uses: its prefix in the GID of an endpoint."""
 BURN = """
 import os, signal, time
 signal.signal(signal.SIGCHLD, signal.SIG_IGN)
@@ -71,19 +64,6 @@ except ChildProcessError:
 def test_a_student_room_starts_with_the_names_of_ipython_alone(shared, student):
     seen = student(shared, 'print(sorted(n for n in globals() if not n.startswith("_")))')
     assert text_of(seen) == "['In', 'Out', 'exit', 'get_ipython', 'open', 'quit']\n"
-
-
-@pytest.mark.parametrize('packages', [[], ['arm_player']], ids=['a lesson', 'a package'])
-def test_the_checks_of_a_lesson_share_a_participant_and_those_of_a_package_do_not(
-    loop, check, tmp_path, packages
-):
-    for name in packages:
-        (tmp_path / name).mkdir()
-    with opened_rooms(loop, extra_files=list(tmp_path.iterdir())) as rooms:
-        if rooms._sandbox is None:
-            pytest.skip('without a sandbox, participants use shared memory, and none stays')
-        first, second = (text_of(check(rooms, PARTICIPANT)) for _ in range(2))
-    assert (first == second) is (not packages)
 
 
 @pytest.mark.slow

@@ -88,9 +88,8 @@ NOT_READY = {
 def test_both_rooms_close_if_one_cannot_be_made_ready(loop, monkeypatch, left, code, why):
     monkeypatch.setattr(module, 'STUDENT_COMES', code)
     timeout_sec = 0.5 if code == PROBE else 3600  # what can't come any more is not waited for
-    for name in 'TEST_RECEIVES', 'TEST_STAYS':
-        receives = getattr(module, name).replace('receive(', f'receive({timeout_sec}, ')
-        monkeypatch.setattr(module, name, receives)
+    receives = module.TEST_RECEIVES.replace('receive()', f'receive({timeout_sec})')
+    monkeypatch.setattr(module, 'TEST_RECEIVES', receives)
     monkeypatch.setattr(module, 'SETUP_TIMEOUT_SEC', 3600.0)
     with pytest.raises(RoomFailure, match=why):
         loop.run(GradingRooms(isolated=require_isolation()).__aenter__())

@@ -15,7 +15,6 @@ from my_robot_basics.validate.kernels.questions import (
     STUDENT_COMES,
     STUDENT_GOES,
     TEST_RECEIVES,
-    TEST_STAYS,
     as_expression,
     reply_of,
 )
@@ -190,8 +189,7 @@ class GradingRooms:
 
     async def _prepare_test(self) -> None:
         await self._test.start()
-        stays = self._sandbox and not any(file.is_dir() for file in self._extra_files)
-        await self._prepare(self._test, TEST_STAYS if stays else TEST_RECEIVES)
+        await self._prepare(self._test, TEST_RECEIVES)
 
     async def _prepare(self, kernel: GradingKernel, code: str) -> None:
         run = await kernel.run(code, timeout_sec=SETUP_TIMEOUT_SEC)

@@ -18,32 +18,25 @@ TOPIC_NAME = '/_probe'
 QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 TIMEOUT_SEC = 20.0
 
-_announced: list[Node] = []
+_announced: list = []
 
 
 def announce() -> None:
     """Publish one transient-local message, which is available until `remove_announcement`."""
-    node = _node('_probe_student_room', _new_context())
+    context, node = _node('_probe_student_room')
     node.create_publisher(Empty, TOPIC_NAME, QOS).publish(Empty())
-    _announced.append(node)
+    _announced.append((context, node))
 
 
 def remove_announcement() -> None:
     """Remove the announcement, its node and its context."""
     while _announced:
-        node = _announced.pop()
-        node.destroy_node()
-        node.context.try_shutdown()
+        _end(*_announced.pop())
 
 
-def receive(timeout_sec: float = TIMEOUT_SEC, *, context: Context | None = None) -> None:
-    """Wait for the other room's message; raises TimeoutError if it does not arrive in time.
-
-    The node is in `context`; without one, it gets a context of its own, which ends with it.
-    """
-    owned = context is None
-    context = context or _new_context()
-    node = _node('_probe_test_room', context)
+def receive(timeout_sec: float = TIMEOUT_SEC) -> None:
+    """Wait for the other room's message; raises TimeoutError if it does not arrive in time."""
+    context, node = _node('_probe_test_room')
     received = threading.Event()
     node.create_subscription(Empty, TOPIC_NAME, lambda _: received.set(), QOS)
     executor = SingleThreadedExecutor(context=context)
@@ -56,19 +49,19 @@ def receive(timeout_sec: float = TIMEOUT_SEC, *, context: Context | None = None)
             executor.spin_once(timeout_sec=0.1)
     finally:
         executor.shutdown()
-        node.destroy_node()
-        if owned:
-            context.try_shutdown()
+        _end(context, node)
 
 
-def _new_context() -> Context:
+def _node(name: str) -> tuple[Context, Node]:
     classroom.enter()
     context = Context()
     rclpy.init(context=context)
-    return context
-
-
-def _node(name: str, context: Context) -> Node:
-    return rclpy.create_node(
+    node = rclpy.create_node(
         name, context=context, start_parameter_services=False, enable_rosout=False
     )
+    return context, node
+
+
+def _end(context: Context, node: Node) -> None:
+    node.destroy_node()
+    context.try_shutdown()

@@ -1,8 +1,7 @@
 """One DDS participant for all watchers of a cell: discovery takes a new one 0.3 s each time.
 
-It ends with the cell: the next one may be the student's. In a room of the grader, no cell is the
-student's: there it may stay, and has discovered the student's nodes before a check looks for them.
-An idle node keeps it: rmw ends a participant with the last node of its context.
+It ends with the cell: the next one may be the student's. An idle node keeps it: rmw ends a
+participant with the last node of its context.
 """
 
 import rclpy
@@ -11,14 +10,12 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
-from my_robot_basics.graph import earlier_waits
-from my_robot_basics.session import classroom, kernel
+from my_robot_basics.session import kernel
 
 KEEPER = '_keeper'
 _keepers: dict[int, Node] = {}
 """The idle node for each ROS domain; its context is the shared one."""
 _watched: list[object] = []
-_stays = False
 
 
 def new_context(domain_id: int) -> Context:
@@ -33,22 +30,13 @@ def new_context(domain_id: int) -> Context:
     return context
 
 
-def stay() -> Context:
-    """Join the lesson's domain for all cells of this kernel, and return their context."""
-    global _stays
-    _stays = True
-    context = context_of_cell(classroom.enter())
-    assert context  # a kernel calls this
-    return context
-
-
 def context_of_cell(domain_id: int) -> Context | None:
     """The context shared by the present cell's watchers; None outside a kernel."""
     shell = kernel.shell()
     if shell is None:
         return None
     if shell not in _watched:
-        shell.events.register('post_execute', _end_cell)
+        shell.events.register('post_execute', _end)
         _watched.append(shell)
     # a signal handler of the student's rclpy.init() shuts all contexts of the process down
     if not all(keeper.context.ok() for keeper in _keepers.values()):
@@ -67,13 +55,6 @@ def _keeper(context: Context) -> Node:
         start_parameter_services=False,
         parameter_overrides=[Parameter('start_type_description_service', value=False)],
     )
-
-
-def _end_cell() -> None:
-    if not _stays:
-        _end()
-    for keeper in _keepers.values():
-        earlier_waits.forget(keeper.context)
 
 
 def _end() -> None:

@@ -20,8 +20,3 @@ def is_known(context: Context, name: Hashable, what: object) -> bool:
 def remember(context: Context, name: Hashable, what: object) -> None:
     """Remember that exactly `what` (such as a set of GIDs) exists, after waiting for more."""
     _seen.setdefault(context, {})[name] = what
-
-
-def forget(context: Context) -> None:
-    """Forget what this participant has waited for: another cell begins."""
-    _seen.pop(context, None)

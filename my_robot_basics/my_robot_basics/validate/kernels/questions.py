@@ -20,14 +20,6 @@ TEST_RECEIVES = """
 from my_robot_basics.exchange import probe
 probe.receive()
 """
-TEST_STAYS = """
-from my_robot_basics.exchange import probe
-from my_robot_basics.graph import cell_context
-probe.receive(context=cell_context.stay())
-"""
-"""The test's room receives with the participant that its checks use, which so knows the student's
-nodes before the first check looks for them. Not where programs of a package are killed: it would
-go on to see them for five seconds. Nor without a sandbox: it would leave shared memory behind."""
 STUDENT_GOES = (
     'import sys; probe.remove_announcement(); sys.path.append({files!r}); del probe, sys'
 )
