@@ -20,10 +20,22 @@ file = f'{tempfile.mkdtemp()}/history.sqlite'
 shell = InteractiveShell(config=Config(HistoryManager={'hist_file': file}))
 assert 'IPythonHistorySavingThread' in [thread.name for thread in threading.enumerate()]
 """
+LOOP = """
+import asyncio, threading
+loop = asyncio.new_event_loop()
+threading.Thread(target=loop.run_forever, daemon=True).start()
+"""
+SCRIPT = """
+from IPython.core.interactiveshell import InteractiveShell
+InteractiveShell().run_cell_magic('bash', '', 'true')
+import threading
+assert any('run_forever' in thread.name for thread in threading.enumerate())
+"""
 NOTHING_COMES = {
     'nothing': ('', 0, []),
     'our own threads': ('import my_robot_basics.live.nodes.runner', 0, []),
     "IPython's thread for the history of cells": (HISTORY, 0, []),
+    'the event loop of %%bash': (SCRIPT, 0, []),
     'a node without a timer': (NODE, 0, ['/idle']),
     'a node of the course': (NODE.replace('idle', '_idle'), 0, []),
     'a timer that is cancelled': (NODE + 'node.create_timer(1, print).cancel()', 0, ['/idle']),
@@ -37,6 +49,16 @@ SOMETHING_MAY = {
     ),
     'a thread that threading does not know': (
         'import _thread, time\ndef rest(): time.sleep(9)\n_thread.start_new_thread(rest, ())',
+        9,
+    ),
+    'a task in an event loop of a thread': (
+        LOOP + 'asyncio.run_coroutine_threadsafe(asyncio.sleep(9), loop)\n'
+        'import time; time.sleep(0.2)',
+        9,
+    ),
+    'a call in an event loop of a thread': (
+        LOOP + 'loop.call_soon_threadsafe(loop.call_later, 9, print)\n'
+        'import time; time.sleep(0.2)',
         9,
     ),
     'a process': ('import subprocess; child = subprocess.Popen(["sleep", "9"], stdout=-3)', 9),

@@ -52,7 +52,15 @@ def _is_ours(thread: threading.Thread) -> bool:
     target: Callable[[], object] | None = getattr(thread, '_target', None)
     module = type(thread).__module__ if target is None else getattr(target, '__module__', '')
     is_of_kernel = module == _HISTORY or f'{module}'.partition('.')[0] in _OURS
-    return thread is threading.main_thread() or is_of_kernel
+    return thread is threading.main_thread() or is_of_kernel or _is_idle_loop(target)
+
+
+def _is_idle_loop(target: object) -> bool:
+    """Whether a thread runs an event loop that has nothing to do: `%%bash` leaves one behind."""
+    loop = getattr(target, '__self__', None)
+    if not isinstance(loop, asyncio.BaseEventLoop):
+        return False
+    return not asyncio.all_tasks(loop) and not vars(loop)['_scheduled']  # it has no public name
 
 
 def _has_processes() -> bool:
