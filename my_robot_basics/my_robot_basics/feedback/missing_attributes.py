@@ -1,7 +1,9 @@
-"""Hints for an attribute that an object does not have: another spelling, or a definition."""
+"""Hints for a name that does not exist: another spelling, or where to define an attribute."""
 
 import difflib
 import re
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from my_robot_basics.feedback.rclpy_names import CLASSES
 
@@ -14,13 +16,32 @@ METHODS = (
     *('spin_once', 'spin_until_future_complete', 'add_node', 'remove_node', 'create_node'),
 )
 """Methods and functions of rclpy that the lessons use, and whose names have several words."""
+TYPES = (
+    *('Node', 'JointState', 'Point', 'PointStamped', 'Header', 'Int32', 'String', 'Bool', 'Time'),
+    *('SolveIK', 'MoveArm', 'SetBool', 'Trigger', 'GoalStatus', 'Duration', 'Parameter'),
+    *('ActionClient', 'ActionServer', 'GoalResponse', 'CancelResponse', 'QoSProfile'),
+    *('DurabilityPolicy', 'ReliabilityPolicy', 'ExternalShutdownException'),
+    *('MultiThreadedExecutor', 'SingleThreadedExecutor', 'ReentrantCallbackGroup'),
+    *('MutuallyExclusiveCallbackGroup', 'ParameterDescriptor', 'SetParametersResult'),
+)
+"""Classes, messages, services and actions that the lessons import."""
 _OTHER_WORDS = {'createsubscriber': 'create_subscription', 'createserver': 'create_service'}
 """Names with another word in them, without their underscores."""
 _ALIKE = 0.88
 """How alike two names are, at least, if one is a misspelling of the other."""
+_UNKNOWN = re.compile(r"cannot import name '(\w+)' from|name '([A-Z]\w+)' is not defined")
+"""A variable, too, may be undefined: a class has a capital letter."""
 _MISSING = re.compile(r"has no attribute '(\w+)'")
 _MAY_BE_OWN = re.compile(rf"'(?!(?:NoneType|{CLASSES})')[A-Z]\w*' object has no attribute")
 """What Python says of an object whose class may be a student's own, by its capital letter."""
+
+
+def hint_for_misspelt(said: str) -> str:
+    """Return what to write in place of a misspelt name of a class, message, service or action."""
+    found = _UNKNOWN.search(said)
+    name = (found[1] or found[2]) if found else ''
+    meant = _spell(name, TYPES)
+    return f', so write {meant!r} in its place' if meant else ''
 
 
 def hint_for_missing(said: str) -> str:
@@ -28,7 +49,7 @@ def hint_for_missing(said: str) -> str:
     found = _MISSING.search(said)
     if found is None:
         return ''
-    if method := _spell(found[1]):
+    if method := _spell(found[1], METHODS, _OTHER_WORDS):
         return f', so write {method!r} in its place'
     if _MAY_BE_OWN.search(said):
         return (
@@ -39,9 +60,11 @@ def hint_for_missing(said: str) -> str:
     return ''
 
 
-def _spell(name: str) -> str:
-    """Return the method of METHODS that is meant by a name; '' for none, and for itself."""
-    by_letters = {each.replace('_', ''): each for each in METHODS} | _OTHER_WORDS
+def _spell(
+    name: str, known: Sequence[str], others: Mapping[str, str] = MappingProxyType({})
+) -> str:
+    """Return which of the known names is meant; '' for none, and for itself."""
+    by_letters = {each.replace('_', '').casefold(): each for each in known} | dict(others)
     plain = name.replace('_', '').casefold()
     alike = difflib.get_close_matches(plain, by_letters, n=1, cutoff=_ALIKE)
-    return by_letters[alike[0]] if alike and name not in METHODS else ''
+    return by_letters[alike[0]] if alike and name not in known else ''

@@ -11,7 +11,7 @@ from my_robot_basics.feedback.error_words import BY_WORDS
 from my_robot_basics.feedback.future_errors import OF_FUTURES
 from my_robot_basics.feedback.hidden import student_text, without_marks
 from my_robot_basics.feedback.message_errors import OF_MESSAGES
-from my_robot_basics.feedback.missing_attributes import hint_for_missing
+from my_robot_basics.feedback.missing_attributes import hint_for_missing, hint_for_misspelt
 from my_robot_basics.feedback.moved_names import MOVED
 from my_robot_basics.feedback.syntax_errors import OF_SYNTAX
 from my_robot_basics.feedback.value_errors import OF_VALUES
@@ -45,6 +45,8 @@ def hint_for_exception(said: str) -> str:
         return _about_character(found[1])
     if found := _NAME.search(said):
         return _about_name(found['name'], is_node=found['kind'] == 'node')
+    if misspelt := hint_for_misspelt(said):
+        return misspelt
     by_words = (clause for words, clause in _compile_cases() if words.search(said))
     return next(by_words, '') or hint_for_missing(said)
 
