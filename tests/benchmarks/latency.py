@@ -1,6 +1,6 @@
 """How long the grading of one submission takes, alone and beside others: p50, p95 and p99.
 
-    .venv/bin/python tests/benchmarks/latency.py [--beside 0 1 10 50] [--rounds 1] [LESSON ...]
+    .venv/bin/python tests/benchmarks/latency.py [LESSON ...] [--beside 0 1 10 50] [--rounds 1]
 
 For each lesson, all its sample answers, right and wrong, are submitted to warm workers. As soon as
 one is graded the next is submitted, so the number of others is constant. The time is measured from
