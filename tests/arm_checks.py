@@ -15,7 +15,7 @@ def feedback(move_arm):
 
 
 def cancels(move_arm):
-    moves.expect_cancels(move_arm, (1.2, -0.6), speed=0.2)
+    moves.expect_cancels(move_arm, (1.2, -0.6), speed=0.15)
     moves.expect_late_cancel(move_arm, (0.9, 0.3))
 
 

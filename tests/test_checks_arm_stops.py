@@ -88,6 +88,7 @@ def test_a_server_that_looks_at_other_intervals_is_late_in_the_visible_check(loo
 
 def test_a_move_of_two_seconds_is_surely_over_when_the_open_check_cancels_a_longer_one():
     """At 2.05 s, a server whose moves take two seconds each was sometimes told something else."""
+    assert moment_to_cancel(8.0, is_driven=True) == pytest.approx(3.65)
     assert moment_to_cancel(6.0, is_driven=True) == pytest.approx(3.65)
     assert moment_to_cancel(6.0, is_driven=False) == 2.55
 
