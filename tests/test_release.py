@@ -194,6 +194,14 @@ UNPAIRED = {
         "line 1: 'BEGIN SOLUTION' is in a cell of another type: give the cell the type"
         " 'Autograded answer' in Create Assignment, or remove the line",
     ),
+    'misspelt': (
+        '1\n### BEGIN HIDDEN TEST\n2',
+        "line 2: 'BEGIN HIDDEN TEST' marks nothing: write '### BEGIN HIDDEN TESTS'",
+    ),
+    'in small letters': (
+        '1\n# Begin solution:\n2',
+        "line 2: 'Begin solution:' marks nothing: write '### BEGIN SOLUTION'",
+    ),
     'no end of a mark scheme': (
         '### BEGIN MARK SCHEME\n1',
         "line 1: 'BEGIN MARK SCHEME' has no end: add a line '### END MARK SCHEME' after its last"
@@ -216,6 +224,28 @@ def test_a_lesson_with_an_unpaired_marker_is_not_released(course):
     write_source(course, lesson)
     said = f'solutions/{TOY}/{TOY}.ipynb cannot be released: the cell `double-hidden`, line '
     with pytest.raises(CourseError, match=f'^{re.escape(said)}'):
+        release(course)
+    write_source(course, toy_lesson())
+
+
+def test_an_answer_left_in_the_cell_to_experiment_in_is_not_released(course):
+    lesson = toy_lesson()
+    lesson.cells[5].source = lesson.cells[4].source.replace('### BEGIN SOLUTION', '')
+    lesson.cells[5].source = lesson.cells[5].source.replace('### END SOLUTION', '')
+    write_source(course, lesson)
+    with pytest.raises(CourseError, match='shows a line of an answer'):
+        release(course)
+    write_source(course, toy_lesson())
+
+
+def test_metadata_and_markers_are_reported_at_once(course):
+    lesson = toy_lesson()
+    del lesson.cells[6].metadata.nbgrader['points']
+    lesson.cells[7].source = lesson.cells[7].source.replace('### END HIDDEN TESTS', '')
+    write_source(course, lesson)
+    with pytest.raises(
+        CourseError, match=r'`double-check` has no points.*HIDDEN TESTS. has no end'
+    ):
         release(course)
     write_source(course, toy_lesson())
 

@@ -4,6 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 import nbformat
+from my_robot_basics.validate.lessons.cells import is_code
+from my_robot_basics.validate.lessons.exercises import find_exercises
 from nbformat import NotebookNode
 
 from grader.course import Course
@@ -21,7 +23,7 @@ COMMON_PHRASE = 25
 
 def leaks_of(course: Course, assignment: str, released: Path) -> Iterator[str]:
     """Yield a message for each answer and hidden test in an assignment's released files."""
-    secret = _secrets(course.source(assignment).cells)
+    secret = _secrets(course.source(assignment))
     for path in files_in(released / assignment):
         file = released / assignment / path
         text = _text(file.name, file.read_bytes())
@@ -42,9 +44,9 @@ def leaks_beside(course: Course, files: Mapping[str, bytes]) -> Iterator[str]:
     """
     programs = '\n'.join(_text(name, files[name]) for name in files if name.endswith('.py'))
     for assignment in course.assignments():
-        cells = course.source(assignment).cells
-        secret = _secrets(cells)
-        tests = {line for cell in cells if _is_check(cell) for line in _secret_lines(cell)}
+        source = course.source(assignment)
+        secret = _secrets(source)
+        tests = {line for cell in source.cells if _is_check(cell) for line in _secret_lines(cell)}
         for name, content in files.items():
             text = _text(name, content)
             said = programs if name.endswith('.po') else ''
@@ -64,10 +66,18 @@ def files_in(folder: Path) -> list[Path]:
     return sorted(p for p in found if not any(part.startswith('.') for part in p.parts))
 
 
-def _secrets(cells: Iterable[NotebookNode]) -> set[str]:
+def _secrets(notebook: NotebookNode) -> set[str]:
     """Return the lines that must not be released, except those that a lesson shows openly."""
+    cells = notebook.cells
+    tries = {
+        index
+        for exercise in find_exercises(notebook)
+        for index in range(exercise.answer + 1, max(exercise.grades, default=0))
+        if is_code(cells[index]) and 'nbgrader' not in cells[index].metadata
+    }
+    """Cells to experiment in: what their author has left there is not taught."""
     secret = {line for cell in cells for line in _secret_lines(cell)}
-    taught = {line for cell in cells for line in _open_lines(cell)}
+    taught = {line for i, cell in enumerate(cells) if i not in tries for line in _open_lines(cell)}
     return {line for line in secret if not any(line in open_line for open_line in taught)}
 
 

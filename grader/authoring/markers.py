@@ -1,9 +1,10 @@
 """Check that the BEGIN and END lines of nbgrader's regions come in pairs, and in the right cells.
 
 nbgrader refuses such a lesson, too, but does not name the cell, and it ignores an END without
-its BEGIN.
+its BEGIN. It takes a misspelt pair for comments: students would get what is between them.
 """
 
+import difflib
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -29,12 +30,17 @@ REGIONS = (
     _Region('HIDDEN TESTS', 'the last hidden line', 'grade', 'Autograded tests'),
     _Region('MARK SCHEME', 'its last line'),
 )
+MARKS = [f'{edge} {region.words}' for region in REGIONS for edge in ('BEGIN', 'END')]
+ALIKE = 0.75
+"""From this similarity on, a comment is a misspelt mark: BEGIN TESTS, End solution."""
 
 
 def marker_faults(notebook: NotebookNode) -> Iterator[str]:
     """Yield which cell has a region without its end or its beginning, and what to add."""
     for cell in notebook.cells:
         name = grade_id(cell) or cell.get('id', 'without an id')
+        for fault in _misspelt(cell):
+            yield f'the cell `{name}`, {fault}'
         for region in REGIONS:
             for fault in _faults(cell, region):
                 yield f'the cell `{name}`, {fault}'
@@ -63,6 +69,15 @@ def _faults(cell: NotebookNode, region: _Region) -> Iterator[str]:
             opened = 0
     if opened:
         yield _without_end(region, opened, f'after {region.last}')
+
+
+def _misspelt(cell: NotebookNode) -> Iterator[str]:
+    for number, line in enumerate(cell.source.split('\n'), 1):
+        words = line.strip().lstrip('#').strip()
+        if not line.strip().startswith('#') or any(mark in line for mark in MARKS):
+            continue
+        for mark in difflib.get_close_matches(words.upper(), MARKS, 1, ALIKE):
+            yield f'line {number}: {words!r} marks nothing: write {"### " + mark!r}'
 
 
 def _without_end(region: _Region, opened: int, where: str) -> str:

@@ -21,7 +21,7 @@ def refuse_faulty(course: Course, assignments: Iterable[str]) -> None:
 def _faults(course: Course, name: str) -> Iterator[str]:
     source = course.source(name)
     where = f'solutions/{name}/{name}.ipynb'
-    for find in (metadata_faults, marker_faults, outside_of_exercises):
-        if faults := [*find(source)]:
-            yield from (f'{where} cannot be released: {fault}' for fault in faults)
-            return  # an answer without its type would also leave its checks without an exercise
+    faults = [*metadata_faults(source), *marker_faults(source)]
+    # an answer without its type would also leave its checks without an exercise
+    for fault in faults or outside_of_exercises(source):
+        yield f'{where} cannot be released: {fault}'
