@@ -103,6 +103,13 @@ def moodle_with_a_zip_of_what_is_in_the_package(work, came_in):
     zipped(work / PACKAGE, came_in / MOODLE / f'{PACKAGE} (1).zip')
 
 
+def moodle_with_a_zip_of_the_workspace(work, came_in):
+    (came_in / MOODLE).mkdir()
+    shutil.copy(work / NOTEBOOK, came_in / MOODLE)
+    inside = f'ros_ws/src/{PACKAGE}/'
+    zipped(work / PACKAGE, came_in / MOODLE / f'{PACKAGE}.zip', within=inside)
+
+
 def canvas_with_two_uploads(work, came_in):
     shutil.copy(work / NOTEBOOK, came_in / f'ada_18151_21012_{NOTEBOOK}')
     zipped(work / PACKAGE, came_in / f'ada_18151_21013_{PACKAGE}-1.zip', within=f'{PACKAGE}/')
@@ -117,7 +124,7 @@ def exchange(work, came_in):
     [
         *(folder_of_a_student, archive_of_a_student, tar_of_a_student, moodle_with_folders),
         *(moodle_with_a_zip_of_the_package, moodle_with_a_zip_of_what_is_in_the_package),
-        *(canvas_with_two_uploads, exchange),
+        *(moodle_with_a_zip_of_the_workspace, canvas_with_two_uploads, exchange),
     ],
 )
 def test_a_package_is_collected_with_its_notebook(course, work, came_in, pack):

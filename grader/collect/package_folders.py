@@ -126,10 +126,14 @@ def _root_of(
 def _package(path: tuple[str, ...], members: list[Incoming]) -> IncomingPackage:
     *at, top = path
     name, label = package_in(top), label_in(top)
-    manifests = {each.parts for each in members}
+    folders = {each.parts[:-1] for each in members if each.parts[-1] == 'package.xml'}
     root: tuple[str, ...] = path
-    if ARCHIVE.search(top) and (*path, 'package.xml') not in manifests:
+    if ARCHIVE.search(top) and path not in folders:
         root = (*path, name)  # most programs put the folder itself into the archive
+        # or those above it, too: ros_ws/src/arm_player
+        deeper = [each for each in folders if each[-1] == name]
+        if root not in folders and len(deeper) == 1:
+            [root] = deeper
     return IncomingPackage(name, tuple(at), label.number if label else '', members, root)
 
 
