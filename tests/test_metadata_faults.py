@@ -107,6 +107,15 @@ def test_a_check_that_is_not_valid_python_is_reported_with_the_line():
     )
 
 
+def test_a_check_that_uses_a_name_of_the_lesson_is_reported():
+    lesson = toy_lesson()
+    lesson.cells[7].source += '\nassert seen == double(0)'  # the check above binds `seen`
+    assert list(metadata_faults(lesson)) == [
+        "the cell `double-hidden` uses 'double', which it does not bind: a check runs apart from"
+        ' the lesson, so import or define it in the check'
+    ]
+
+
 @pytest.mark.parametrize('use', [release, lambda course: register(course, TOY)])
 def test_release_and_register_name_the_lesson_and_its_faulty_cell(use, tmp_path):
     lesson = toy_lesson()

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 
 from my_robot_basics.validate.lessons.cells import role
+from my_robot_basics.validate.lessons.names import names_of
 from nbformat import NotebookNode
 
 SCHEMA = 3
@@ -22,6 +23,10 @@ _NEEDED = ('grade', 'solution', 'locked')
 def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
     """Yield what is wrong with each cell that has nbgrader metadata, and what to do."""
     ids = set()
+    lent: set[str] = set()
+    """What the checks above bind: those of an exercise share a process."""
+    unclear = False
+    """Whether one of them may bind names that its text does not show, by a star import."""
     for number, cell in enumerate(notebook.cells, 1):
         if 'nbgrader' not in cell.metadata:
             continue
@@ -49,6 +54,15 @@ def metadata_faults(notebook: NotebookNode) -> Iterator[str]:
         ids.add(name)
         for fault in _faults(cell):
             yield f'{shown} {fault}'
+        if cell.cell_type == 'code' and role(cell) == 'grade':
+            names = names_of(cell.source)
+            unclear |= names.binds_more
+            if not unclear and (unbound := sorted(names.needed - lent)):
+                yield (
+                    f'{shown} uses {unbound[0]!r}, which it does not bind: a check runs apart'
+                    ' from the lesson, so import or define it in the check'
+                )
+            lent |= names.bound
 
 
 def _faults(cell: NotebookNode) -> Iterator[str]:
