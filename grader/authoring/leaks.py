@@ -75,7 +75,7 @@ def _secrets(notebook: NotebookNode) -> set[str]:
         for index in range(exercise.answer + 1, max(exercise.grades, default=0))
         if is_code(cells[index]) and 'nbgrader' not in cells[index].metadata
     }
-    """Cells to experiment in: what their author has left there is not taught."""
+    """Cells to experiment in: a longer line that their author has left there is not taught."""
     secret = {line for cell in cells for line in _secret_lines(cell)}
     taught = {line for i, cell in enumerate(cells) if i not in tries for line in _open_lines(cell)}
     return {line for line in secret if not any(line in open_line for open_line in taught)}

@@ -50,7 +50,10 @@ def release(
             say(line)
         write_editions(course, _names(course, built), built, metadata=METADATA, say=say)
         if leaks := _leaks(course, built):
-            raise CourseError('nothing was released: ' + '; '.join(leaks))
+            raise CourseError(
+                f'nothing was released: {"; ".join(leaks)}; take these lines out of all cells but'
+                ' the answer and the hidden part'
+            )
         changed = [path for path in files_in(built) if _differs(built, course, path)]
         for line in _keep_work(course, changed):
             say(line)
@@ -141,12 +144,13 @@ def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterat
 def _leaks(course: Course, released: Path) -> list[str]:
     """Return messages on answers and hidden tests in the released lessons of all languages."""
     folders = [released, *(released / edition.language for edition in editions(course))]
-    return [
+    leaks = (
         leak
         for folder in folders
         for name in _names(course, folder)
         for leak in leaks_of(course, name, folder)
-    ]
+    )
+    return [*dict.fromkeys(leaks)]
 
 
 def last_release(course: Course, name: str) -> NotebookNode:
