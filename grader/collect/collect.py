@@ -165,10 +165,10 @@ def store_submission(
 
 def _note_time(path: Path, came: datetime | None, stored: datetime | None) -> str:
     """Write when a submission was handed in if that was not known; return which time counts."""
+    if stored and came != stored:
+        return f'the time that counts is {stored:%Y-%m-%d %H:%M:%S}'
     if came is None or came == stored:
         return 'nothing new'
-    if stored:
-        return f'the time that counts is {stored:%Y-%m-%d %H:%M:%S}'
     taken = utc_of(path.parent.stat().st_mtime)
     if taken and came > taken:  # the same files once more, which must not make them late
         return f'taken in before that, on {taken:%Y-%m-%d %H:%M:%S}, without a time'
