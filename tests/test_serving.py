@@ -162,6 +162,8 @@ def test_serve_without_a_folder_reports_which_folder_to_name(course, inbound, ca
     assert said.endswith('./course serve --status\n')
     assert main(['serve', str(inbound / 'nowhere')], course=course) == 1
     assert f'{inbound / "nowhere"} is no folder: expected the one' in capsys.readouterr().err
+    assert main(['serve', str(course.root / 'notebooks')], course=course) == 1
+    assert "notebooks holds the course's own lessons: expected a" in capsys.readouterr().err
 
 
 def test_a_folder_filled_by_another_platform_is_served_with_its_changes(course, tmp_path):

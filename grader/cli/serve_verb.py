@@ -3,6 +3,7 @@
 import argparse
 from datetime import datetime
 
+from grader.collect.collect import refuse_the_course
 from grader.common.errors import CourseError
 from grader.course import Course
 from grader.serving.exchange import feedback_folder
@@ -30,6 +31,7 @@ def run_serve(course: Course, asked: argparse.Namespace) -> int:
         )
     if not asked.folder.is_dir():
         raise CourseError(f'{asked.folder} is no folder: expected the one {_INBOUND}')
+    refuse_the_course(course, asked.folder.resolve())
     feedback = feedback_folder(asked.folder)
     _say(f'serving {asked.folder}' + (f', feedback goes to {feedback}' if feedback else ''))
     try:

@@ -62,7 +62,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
     nothing else says when a file was handed in, `file_times` uses its modification time. Raises
     CourseError if `source` can't be collected, or if the disk is full.
     """
-    _refuse_the_course(course, source.resolve())
+    refuse_the_course(course, source.resolve())
     grades = cache(lambda: records(course))
     with gradebook_lock(course.gradebook), tempfile.TemporaryDirectory(prefix='collect-') as aside:
         try:
@@ -96,7 +96,7 @@ def collect(course: Course, source: Path, *, file_times: bool = False) -> Iterat
                 yield FileOutcome(incoming.path, UNUSED, 'hidden, or left behind by a program')
 
 
-def _refuse_the_course(course: Course, source: Path) -> None:
+def refuse_the_course(course: Course, source: Path) -> None:
     """Raise CourseError if `source` contains the lessons: `zh_CN` would become a student."""
     root = course.root.resolve()
     lessons = [root / name for name in ('notebooks', 'solutions')]
