@@ -228,9 +228,12 @@ def test_a_damaged_catalogue_is_named(course):
         edition.translations(TOY)
 
 
-def test_a_catalogue_that_belongs_to_no_lesson_is_named(course):
-    catalogue_path(course.root / 'locale', 'zh_CN', 'gone').write_text('', encoding='utf-8')
-    with pytest.raises(CourseError, match=r'gone\.po belongs to no lesson'):
+def test_each_catalogue_that_belongs_to_no_lesson_is_named(course):
+    for gone in ('gone', 'lost'):
+        catalogue_path(course.root / 'locale', 'zh_CN', gone).write_text('', encoding='utf-8')
+    with pytest.raises(
+        CourseError, match=r'gone\.po belongs to no lesson.*lost\.po belongs to no'
+    ):
         update_catalogues(course)
 
 

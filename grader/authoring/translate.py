@@ -51,9 +51,11 @@ def update_catalogues(course: Course) -> list[PartReport]:
             catalogue = _updated(path, language, texts)
             write_whole(path, _as_text(catalogue).encode())
             reports.append(_report(language, part, texts, catalogue))
-        for path in sorted((locale / language / MESSAGES).glob('*.po')):
-            if path.stem not in parts:
-                raise CourseError(f'{path} belongs to no lesson, page or program: remove it')
+    left = [path for path in sorted(locale.glob(f'*/{MESSAGES}/*.po')) if path.stem not in parts]
+    if left:
+        raise CourseError(
+            '; '.join(f'{path} belongs to no lesson, page or program: remove it' for path in left)
+        )
     return reports
 
 
