@@ -1,5 +1,6 @@
 import json
 import re
+import shutil
 from pathlib import Path
 
 import nbformat
@@ -248,6 +249,27 @@ def test_metadata_and_markers_are_reported_at_once(course):
     ):
         release(course)
     write_source(course, toy_lesson())
+
+
+def test_a_notebook_beside_the_lessons_that_is_no_quiz_is_named(course):
+    path = course.root / 'solutions' / 'quiz_mine.ipynb'
+    path.write_text('{}')
+    said = []
+    release(course, say=said.append)
+    path.unlink()
+    assert [line.split(': ')[0] for line in said if 'not released' in line] == [
+        'solutions/quiz_mine.ipynb is not released'
+    ]
+
+
+def test_a_notebook_of_another_name_than_its_folder_is_not_released(course):
+    copy = course.root / 'solutions' / '99_copy'
+    shutil.copytree(course.source_path(TOY).parent, copy)
+    said = f'solutions/99_copy/{TOY}.ipynb cannot be released: give the notebook the name of'
+    with pytest.raises(CourseError, match=re.escape(said)):
+        release(course)
+    shutil.rmtree(copy)
+    assert not (course.root / 'notebooks' / '99_copy').exists()
 
 
 def drop(*names):

@@ -1,5 +1,6 @@
 """The quizzes: notebooks beside the lessons, with questions that running a cell checks."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from nbformat import NotebookNode, read
@@ -19,6 +20,16 @@ def quizzes(course: Course) -> dict[str, NotebookNode]:
 def lesson_before(quiz: str, lessons: list[str]) -> str:
     """Return the lesson that a quiz follows."""
     return QUIZZES[quiz] if QUIZZES[quiz] in lessons else lessons[-1]
+
+
+def unknown_quizzes(course: Course) -> Iterator[str]:
+    """Yield a line for each notebook that is beside the lessons and is no quiz."""
+    for path in sorted((course.root / 'solutions').glob('[!.]*.ipynb')):
+        if path.name not in QUIZZES:
+            yield (
+                f'solutions/{path.name} is not released: a lesson is solutions/NAME/NAME.ipynb,'
+                ' and a quiz has its row in grader/authoring/quizzes.py'
+            )
 
 
 def _read(path: Path) -> NotebookNode:

@@ -18,8 +18,9 @@ from grader.authoring.edition_files import write_editions
 from grader.authoring.editions import editions
 from grader.authoring.index import write_pages
 from grader.authoring.leaks import files_in, leaks_of
+from grader.authoring.quizzes import unknown_quizzes
 from grader.authoring.release_passes import METADATA
-from grader.authoring.source_faults import refuse_faulty
+from grader.authoring.source_faults import refuse_faulty, refuse_misnamed
 from grader.authoring.typed_answers import keep_work
 from grader.common.errors import CourseError
 from grader.common.files import write_whole
@@ -100,6 +101,7 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
     names = course.assignments() if assignment == '*' else [assignment]
     if not names:
         raise CourseError(f'there is no assignment in {course.root / "solutions"}')
+    refuse_misnamed(course)
     refuse_faulty(course, names)
     command = [
         *(sys.executable, '-m', 'nbgrader', 'generate_assignment', assignment, '--no-db'),
@@ -122,6 +124,7 @@ def _build(course: Course, assignment: str, folder: Path) -> Path:
 
 def _keep_outputs(course: Course, built: Path, *, fresh: bool = False) -> Iterator[str]:
     """Keep valid outputs in built notebooks; yield a message for each cell that should be run."""
+    yield from unknown_quizzes(course)
     sanitize = sanitizer_of(course)
     for name in _names(course, built):
         path = built / name / f'{name}.ipynb'

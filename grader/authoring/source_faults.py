@@ -18,6 +18,22 @@ def refuse_faulty(course: Course, assignments: Iterable[str]) -> None:
         raise CourseError('; '.join(faults))
 
 
+def refuse_misnamed(course: Course) -> None:
+    """Raise CourseError if a folder has only a notebook of another name.
+
+    nbgrader would release that, and none of our checks would look at it.
+    """
+    names = course.assignments()
+    found = sorted((course.root / 'solutions').glob('[!.]*/[!.]*.ipynb'))
+    if faults := [
+        f'{path.relative_to(course.root)} cannot be released: give the notebook the name of its'
+        f' folder, {path.parent.name}.ipynb'
+        for path in found
+        if path.parent.name not in names
+    ]:
+        raise CourseError('; '.join(faults))
+
+
 def _faults(course: Course, name: str) -> Iterator[str]:
     source = course.source(name)
     where = f'solutions/{name}/{name}.ipynb'
