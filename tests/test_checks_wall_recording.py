@@ -164,6 +164,32 @@ def test_a_recording_is_continued_only_if_the_rate_stays_the_same(monkeypatch, g
     assert wall_recording.goes_on(None, None, earlier) is goes_on
 
 
+@pytest.mark.parametrize(
+    ('times_said', 'passes'),
+    [
+        ([-0.001], True),
+        ([-0.001] * 4 + [-0.4], True),
+        ([-0.097, 0.1], False),
+        ([-0.2, 0.0], False),
+    ],
+)
+def test_messages_sent_in_pairs_are_not_evenly_spaced_by_the_times_that_they_say(
+    times_said, passes
+):
+    """Each says a time near that at which it arrives; only the two of a pair are far apart."""
+    recording, count = on_wall([0.2] * 20, late_sec=0.0), len(times_said)
+    samples = [
+        replace(sample, offset_sec=-times_said[i % count])
+        for i, sample in enumerate(recording.messages)
+    ]
+    recording = replace(recording, messages=tuple(samples))
+    if passes:
+        recording._expect_true_times()
+        return
+    with pytest.raises(CheckFailed, match=r'that arrive when they are sent'):
+        recording._expect_true_times()
+
+
 @pytest.mark.parametrize('end', ['\n', '\r', '\x0b', '\x85', '\u2028'])
 def test_a_node_name_with_line_ends_makes_a_note_of_one_line(end):
     """A note is a line of a check's: a student would write what a check has said."""
