@@ -28,6 +28,7 @@ class Driven:
         self.in_long_ticks = in_long_ticks
         self.ticks = 0
         self.recorder = SimpleNamespace(received=[], topic_name='/t', publishers=lambda: ('/n',))
+        self.recorder.hidden_publishers = tuple
         self.clock = SimpleNamespace(now_ns=0, time_ns=int, takes_long=lambda: False)
 
     def tick(self, step_ns):

@@ -159,10 +159,13 @@ def test_a_missing_node_is_reported(monkeypatch):
 
 
 @pytest.mark.slow
-def test_two_publishers_are_named(run):
+@pytest.mark.parametrize(
+    ('other', 'named'), [('other', '/kin.*, /other'), ('_other', '/_.*, /kin')]
+)
+def test_two_publishers_are_named(run, other, named):
     run(imported('five_hz').FiveHz)
-    run(imported('five_hz').FiveHz, 'other', key='other')
-    with pytest.raises(CheckFailed, match=r'saw 2 \(/kinematics_publisher, /other\): stop'):
+    run(imported('five_hz').FiveHz, other, key='other')
+    with pytest.raises(CheckFailed, match=rf'saw 2 \({named}\w*\): stop'):
         topic(TOPIC).record(seconds=1.0).assert_rate(hz=10.0)
 
 

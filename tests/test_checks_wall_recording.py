@@ -76,7 +76,8 @@ def test_a_recording_waits_longer_for_a_node_that_seemed_to_ignore_the_clock(mon
     watcher.spin_until = lambda until, timeout_sec: waited.append(timeout_sec)
     recorder = object.__new__(Recorder)
     recorder.received, recorder.offsets_ns, recorder.topic_name = [(None, 0)], [0], TOPIC
-    recorder.take_all, recorder.publishers = (lambda: None), (lambda: ('/a',))
+    recorder.take_all = lambda: None
+    recorder.publishers, recorder.hidden_publishers = (lambda: ('/a',)), tuple
     monkeypatch.setattr(wall_recording, 'ahead_sec', lambda: 30.0)
     wall_recording.record(watcher, recorder, why=why, timeout_sec=4.0)
     wall_recording.record(watcher, recorder, why=NoMessage('none'), timeout_sec=4.0)
@@ -93,7 +94,7 @@ def test_a_recording_does_not_begin_with_a_message_of_the_clock_change(
     watcher = SimpleNamespace(late_sec=0.0)
     recorder = object.__new__(Recorder)
     recorder.received, recorder.offsets_ns, recorder.topic_name = [], [], TOPIC
-    recorder.publishers = lambda: ('/a',)
+    recorder.publishers, recorder.hidden_publishers = (lambda: ('/a',)), tuple
 
     def take_all():
         while times_sec and times_sec[0] <= now.sec:

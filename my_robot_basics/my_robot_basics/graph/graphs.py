@@ -74,7 +74,7 @@ def publisher_infos(
     `is_dds`: the name is DDS's, such as 'rq/solve_ikRequest' for the requests of a service.
     """
     found = node.get_publishers_info_by_topic(topic_name, no_mangle=is_dds)
-    return [info for info in found if not _is_hidden(info)]
+    return [info for info in found if not is_hidden(info)]
 
 
 def subscription_infos(
@@ -85,7 +85,7 @@ def subscription_infos(
     `is_dds`: the name is DDS's, such as 'rq/solve_ikRequest' for the requests of a service.
     """
     found = node.get_subscriptions_info_by_topic(topic_name, no_mangle=is_dds)
-    return [info for info in found if not _is_hidden(info)]
+    return [info for info in found if not is_hidden(info)]
 
 
 def full_name(info: TopicEndpointInfo) -> str:
@@ -173,13 +173,14 @@ def _endpoints(
     topic_names: list[str], look_up: Callable[[str], list[TopicEndpointInfo]]
 ) -> dict[str, tuple[str, ...]]:
     found = {
-        name: tuple(sorted(full_name(info) for info in look_up(name) if not _is_hidden(info)))
+        name: tuple(sorted(full_name(info) for info in look_up(name) if not is_hidden(info)))
         for name in topic_names
     }
     return {name: nodes for name, nodes in found.items() if nodes}
 
 
-def _is_hidden(info: TopicEndpointInfo) -> bool:
+def is_hidden(info: TopicEndpointInfo) -> bool:
+    """Whether an endpoint belongs to a node whose name starts with `_`."""
     return info.node_name.startswith(HIDDEN) and info.node_name != UNKNOWN
 
 

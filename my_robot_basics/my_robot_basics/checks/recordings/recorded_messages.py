@@ -37,6 +37,8 @@ class RecordedMessages:
     """The clock of `seconds` and of the samples' `time_sec`."""
     publishers: tuple[str, ...]
     """Full names of the nodes that publish on the topic, one for each publisher."""
+    hidden_publishers: tuple[str, ...] = ()
+    """The same for nodes whose names start with `_`."""
     seconds: float
     start_sec: float
     """When the recording began, on its clock, since the epoch."""

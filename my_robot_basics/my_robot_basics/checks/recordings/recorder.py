@@ -61,6 +61,11 @@ class Recorder:
         self._publishers = max(now, self._publishers, key=len)
         return self._publishers
 
+    def hidden_publishers(self) -> tuple[str, ...]:
+        """The same for nodes whose names start with `_`: what they send is recorded, too."""
+        infos = self._node.get_publishers_info_by_topic(self.topic_name)
+        return tuple(sorted(graphs.full_name(info) for info in infos if graphs.is_hidden(info)))
+
     def has_other_publishers(self, other: 'Recorder') -> bool:
         """Whether nodes publish on this topic that do not publish on that of the other one."""
         return bool(set(self.publishers()) - set(other.publishers()))

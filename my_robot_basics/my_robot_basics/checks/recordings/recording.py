@@ -112,11 +112,12 @@ class Recording(RecordedMessages):
         return periods.come_too_often(rates.times_of(self), hz, seconds=self.seconds)
 
     def _expect_one_publisher(self) -> None:
-        names = set(self.publishers)
+        publishers = *self.publishers, *self.hidden_publishers
+        names = set(publishers)
         expect(
-            len(self.publishers) == 1,
+            len(publishers) == 1,
             expected=f'one publisher on {self.topic_name}',
-            seen=f'{len(self.publishers)} ({shorten(", ".join(sorted(names)))})',
+            seen=f'{len(publishers)} ({shorten(", ".join(sorted(names)))})',
             hint='stop the other node: two publishers on a topic add up'
             if len(names) > 1
             else 'call create_publisher for this topic once, and start the node once',

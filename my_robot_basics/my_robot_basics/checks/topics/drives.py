@@ -110,6 +110,7 @@ def _recorded(topic: DrivenTopic, *, start_ns: int, step_ns: int) -> Recording:
         messages=tuple(samples),
         clock='simulated',
         publishers=recorder.publishers(),
+        hidden_publishers=recorder.hidden_publishers(),
         seconds=(clock.now_ns - start_ns) / 1e9,
         start_sec=start_ns / 1e9,
         step_sec=step_ns / 1e9,

@@ -81,6 +81,7 @@ def record(
         messages=tuple(sample for sample in samples if sample.time_sec <= seconds),
         clock='wall',
         publishers=recorder.publishers(),
+        hidden_publishers=recorder.hidden_publishers(),
         seconds=seconds,
         start_sec=start_ns / 1e9,
         note=_note(recorder) if str(why) == IGNORES else '',
