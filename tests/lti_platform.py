@@ -16,6 +16,7 @@ from cryptography.hazmat.primitives.asymmetric import rsa
 CLIENT = 'course-of-the-arm'
 ASSERTION = 'urn:ietf:params:oauth:client-assertion-type:jwt-bearer'
 SCOPE = 'https://purl.imsglobal.org/spec/lti-ags/scope'
+HANGS_SEC = 1.5
 PER_PAGE = 1
 """Columns per page: so few that a client has to follow the link to the next page."""
 
@@ -121,7 +122,7 @@ class Handler(BaseHTTPRequestHandler):
         if platform.mood == '500':
             return self.say(500, {'error': 'the database is away'})
         if platform.mood == 'hangs':
-            time.sleep(1.5)
+            time.sleep(HANGS_SEC)
             self.close_connection = True
             return None
         if platform.mood == 'talks nonsense':

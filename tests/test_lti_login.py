@@ -3,15 +3,18 @@
 import html
 import re
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import jwt
 import pytest
+import requests
 from lti_hub import INSTRUCTOR, OUTSIDER, STUDENT, lti_hub
 from lti_launches import CLAIM, Browser, LaunchingPlatform, person
-from lti_platform import new_key, served
+from lti_platform import HANGS_SEC, new_key, served
 
 pytestmark = [pytest.mark.slow, pytest.mark.starts]
 SOMEBODY = 'https://elsewhere.example.org'
+MADE_UP = jwt.encode({}, 'x' * 64, 'HS256', headers={'kid': 'made-up'})
 PEOPLE = {
     'student': person(STUDENT),
     'instructor': person(INSTRUCTOR, 'Instructor', user_id='2'),
@@ -187,6 +190,23 @@ def test_the_hub_keeps_users_and_admits_nobody_while_the_platform_is_away(browse
     assert there.user() == STUDENT
     platform.mood = 'well'
     assert browser.log_in('student').status_code == 302
+
+
+def test_the_hub_answers_others_while_the_platform_is_slow(browser, platform):
+    """A login fetches the platform's keys, also for a token that anybody has made up."""
+    form = browser.follow_link('student')
+    platform.mood = 'hangs'
+    with ThreadPoolExecutor() as threads:
+        asked = len(platform.requests)
+        login = threads.submit(browser.send, form | {'id_token': MADE_UP})
+        while len(platform.requests) == asked:
+            time.sleep(0.01)
+        began = time.monotonic()
+        assert requests.get(f'{platform.tool}/hub/health').status_code == 200
+        took_sec = time.monotonic() - began
+        assert not login.done()
+        assert login.result().status_code == 400
+    assert took_sec < HANGS_SEC / 2
 
 
 def test_the_login_page_names_the_link_to_follow_and_takes_no_password(browser, platform):
