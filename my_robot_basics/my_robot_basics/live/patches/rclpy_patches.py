@@ -4,6 +4,7 @@ from my_robot_basics.live.patches import (
     action_requests,
     action_types,
     child_loggers,
+    execute_errors,
     harmless_errors,
     thread_pools,
 )
@@ -16,3 +17,4 @@ def patch_rclpy() -> None:
     action_types.expect_action_types()
     action_requests.note_requests_first()
     child_loggers.remember_child_loggers()
+    execute_errors.print_once()
