@@ -1,6 +1,7 @@
 """The picture of a goal: the states that it has been through, its feedback, and the arm."""
 
 import math
+import time
 from io import BytesIO
 from itertools import pairwise
 
@@ -156,3 +157,41 @@ def test_the_view_shows_states_and_feedback_of_a_running_action():
         wait_until(lambda: words(view) == expected, 20.0)
     finally:
         stop()
+
+
+class Steps(Node):
+    def __init__(self):
+        super().__init__('steps')
+        ActionServer(self, MoveArm, '/steps', self.execute)
+
+    def execute(self, goal_handle):
+        for left in (0.4, 0.3, 0.2, 0.1, 0.0):
+            feedback = MoveArm.Feedback(position=[0.4 - left, 0.0], remaining=left)
+            goal_handle.publish_feedback(feedback)
+        goal_handle.succeed()
+        return MoveArm.Result()
+
+
+@pytest.mark.starts
+def test_the_last_picture_has_all_feedback_if_the_cell_stops_at_the_result(monkeypatch):
+    view = GoalView('/steps', l1=1.0, l2=0.8)
+    take = view.take_feedback
+
+    def take_slowly(message):
+        time.sleep(0.1)
+        take(message)
+
+    monkeypatch.setattr(view, 'take_feedback', take_slowly)
+    run(Steps)
+    run(GoalFollower, '_follower', '/steps', view)
+    user = run(Node, 'user')
+    client = ActionClient(user, MoveArm, '/steps')
+    try:
+        wait_until(lambda: user.count_subscribers('/steps/_action/feedback') == 2, 20.0)
+        client.wait_for_server(20.0)
+        sent = client.send_goal_async(MoveArm.Goal())
+        wait_until(sent.done, 20.0)
+        wait_until(sent.result().get_result_async().done, 20.0)
+    finally:
+        stop()
+    assert words(view) == f'/steps: {PATHS["SUCCEEDED"]}, feedback 5: 0.00 rad remain'

@@ -58,6 +58,17 @@ class GoalFollower(Node):
         feedback_type = MoveArm.Impl.FeedbackMessage
         self.create_subscription(feedback_type, f'{topics}/feedback', view.take_feedback, 10)
 
+    def destroy_node(self) -> None:
+        """Take what has arrived, then end: a cell calls `stop()` as soon as it has the result.
+
+        Otherwise the last picture of a goal that has SUCCEEDED may show the arm on its way.
+        """
+        for subscription in self.subscriptions:
+            with subscription.handle:
+                while taken := subscription.handle.take_message(subscription.msg_type, False):
+                    subscription.callback(taken[0])
+        super().destroy_node()
+
 
 class GoalView(ArmView):
     """The state of one goal, and its picture."""
