@@ -149,6 +149,17 @@ def test_an_answer_that_starts_a_program_of_the_course_is_refused(lesson, words)
     lesson.run('before.kill(); before.wait()')
 
 
+def test_an_answer_runs_again_beside_the_command_lines_of_a_later_exercise(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run("""from my_robot_basics.live import run_commands
+from my_robot_basics.live.packages import commands
+arm = 'ros2 run my_robot_basics kinematics_publisher --ros-args -r __ns:=/later'""")
+    assert 'arm: started' in lesson.run("run_commands('arm')").stdout
+    lesson.run('class Answer(Talker): pass')
+    assert lesson.run("answer = run_answer('Answer')").error is None
+    assert lesson.value('alive(answer), commands._running[0].process.poll()') == '(True, None)'
+
+
 def test_an_answer_may_call_the_courses_functions(lesson):
     lesson.run("reset('Answer')")
     lesson.run("""from my_robot_basics.two_link_kinematics import forward_kinematics

@@ -8,6 +8,7 @@ from rclpy.node import Node
 
 from my_robot_basics.live.nodes import answer_end, course_nodes, outdated, runner, unawaited
 from my_robot_basics.live.output import troubles
+from my_robot_basics.live.packages import commands
 from my_robot_basics.session import classroom
 from my_robot_basics.session.errors import NotRunnable, tell
 from my_robot_basics.session.neighbours import nodes_here
@@ -75,7 +76,7 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
 
 def _refuse_programs() -> None:
     """End programs of the course's nodes that the answer has started, and raise NotRunnable."""
-    started = course_nodes.programs(besides=_started_before)
+    started = course_nodes.programs(besides=_started_before | _of_another_exercise())
     if started:
         course_nodes.end_programs(started)
         name = min(started.values())
@@ -83,6 +84,17 @@ def _refuse_programs() -> None:
             f"expected a node of your own, saw the course's program {name} started:"
             f' {course_nodes.HOW}'
         )
+
+
+def _of_another_exercise() -> set[psutil.Process]:
+    """The processes of `run_commands`, if a student has gone back to the exercise before it.
+
+    When answers are judged, each exercise has processes of its own: there is none of another.
+    """
+    if classroom.in_grading_room():
+        return set()
+    pids = commands.pids()
+    return {child for child in psutil.Process().children() if child.pid in pids}
 
 
 def _is_idle(NodeClass: type[Node], node: Node) -> bool:

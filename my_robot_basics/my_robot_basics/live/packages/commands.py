@@ -71,6 +71,11 @@ def _why_refused(line: command_line.CommandLine) -> str:
     return ''
 
 
+def pids() -> set[int]:
+    """Return the process IDs of the commands that `run_commands` has started last."""
+    return {command.process.pid for command in _running}
+
+
 def stop_commands() -> None:
     """Stop all processes that `run_commands` has started."""
     while _running:
