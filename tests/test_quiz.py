@@ -108,6 +108,16 @@ def test_a_program_that_does_not_end_is_reported_and_no_guess_is_judged(capsys):
     assert 'You guessed' not in said
 
 
+@pytest.mark.starts
+def test_a_name_of_a_cell_that_has_not_run_is_no_reason_to_run_the_same_cell_again(capsys):
+    def uses_a_class_of_another_cell(run):
+        run(Gripper)  # noqa: F821
+
+    with pytest.raises(NameError, match='Gripper'):
+        ask(uses_a_class_of_another_cell, guess=1)
+    assert 'run the cell again' not in capsys.readouterr().out
+
+
 SAME = [(1, 1.0), ((2, 3), [2, 3]), (0.1 + 0.2, 0.3), (None, None), (True, True)]
 OTHER = [(1, True), ('True', True), ([1], 1), ([1], [1, 2]), (object(), 1), (0, None), ('', [])]
 

@@ -27,8 +27,9 @@ def ask(program: Program, guess: Any = ...) -> None:
     """Run a program, and print whether it returned what was guessed, and why.
 
     Without a guess nothing is run. Lists and tuples are alike, and so are 1 and 1.0; True is
-    not 1.
+    not 1. Raises NameError if the program uses a name of a cell that has not run.
     """
+    __tracebackhide__ = True
     say = partial(put, language_here())
     if guess is ...:
         print(say(NO_GUESS))
@@ -38,6 +39,8 @@ def ask(program: Program, guess: Any = ...) -> None:
     ensure_rclpy()
     try:
         seen = program(nodes.run)
+    except NameError:
+        raise  # to run this cell again does not help: what is said below the error does
     except Exception as error:
         told = '; '.join(f'{type(each).__name__}: {each}' for each in (error, *nodes.errors))
         print(say(NO_END, error=told))
