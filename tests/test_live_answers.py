@@ -50,6 +50,21 @@ def test_run_answer_reports_a_node_that_the_answer_made_and_nothing_spins(lesson
     lesson.run('reset()')
 
 
+def test_a_node_of_a_former_answer_is_told_how_to_get_rid_of_it(lesson):
+    lesson.run("reset('Answer')")
+    lesson.run('class Answer(Talker): pass\nrclpy.init()\nmine = Answer()')
+    lesson.run("run_answer('Answer')")
+    lesson.run('class Answer(Talker): pass')  # without that line: but the notebook has its node
+    error = ' '.join(lesson.run("run_answer('Answer')").error.split())
+    assert error == (
+        'NotRunnable: expected the class Answer alone, saw a node of it from before it was '
+        'changed: run the cell with reset(…), then the answer cell, then this one'
+    )
+    lesson.run("reset('Answer')")
+    lesson.run('class Answer(Talker): pass')
+    assert lesson.run("answer = run_answer('Answer')").error is None
+
+
 def test_the_traceback_of_an_answer_that_raises_shows_its_own_lines_and_none_of_the_course(lesson):
     lesson.run("reset('Answer')")
     lesson.run('class Answer(Node):\n    def __init__(self):\n        self.text = [][1]')

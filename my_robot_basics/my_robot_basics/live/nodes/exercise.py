@@ -66,11 +66,8 @@ def run_answer(name: str, *args: Any, **kwargs: Any) -> Node | None:
     with course_nodes.refuse_course_nodes():
         node = runner.run(answer, *args, **kwargs)
     _refuse_programs()
-    if node is None and any(_is_idle(answer, other) for other in nodes_here()):
-        raise NotRunnable(
-            f'expected the class {name} alone, saw a node of it that nothing spins: leave out the '
-            'line that makes it, because this cell makes one, and spins it'
-        )
+    if node is None:
+        _expect_no_idle_node(answer)
     return node
 
 
@@ -97,8 +94,20 @@ def _of_another_exercise() -> set[psutil.Process]:
     return {child for child in psutil.Process().children() if child.pid in pids}
 
 
-def _is_idle(NodeClass: type[Node], node: Node) -> bool:
-    return isinstance(node, NodeClass) and node.executor is None
+def _expect_no_idle_node(answer: type[Node]) -> None:
+    """Raise NotRunnable if a cell has made a node of the answer that nothing spins."""
+    idle = [node for node in nodes_here() if node.executor is None]
+    if any(isinstance(node, answer) for node in idle):
+        raise NotRunnable(
+            f'expected the class {answer.__name__} alone, saw a node of it that nothing spins: '
+            'leave out the line that makes it, because this cell makes one, and spins it'
+        )
+    # once the cell has run again without that line, the class is another one
+    if any(type(node).__name__ == answer.__name__ for node in idle):
+        raise NotRunnable(
+            f'expected the class {answer.__name__} alone, saw a node of it from before it was '
+            'changed: run the cell with reset(…), then the answer cell, then this one'
+        )
 
 
 def _notebook() -> dict[str, Any]:
