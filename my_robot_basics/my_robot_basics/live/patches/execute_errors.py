@@ -1,7 +1,7 @@
 """Print the traceback of an action's execute callback once for each place that raises.
 
 rclpy catches what the callback raises, logs it, and prints its traceback. A check sends many
-goals: one wrong line put hundreds of red ones between the answer and the check's own message.
+goals: one wrong line put over a hundred red ones between the answer and the check's own message.
 """
 
 import sys
