@@ -145,7 +145,8 @@ class NodeParameters:
                 fail(
                     expected=f'{self.node_name} to answer {service_name}',
                     seen='no answer',
-                    hint=errors.hint() or 'see that the node spins, and that no callback waits',
+                    hint=errors.why(watcher)
+                    or 'see that the node spins, and that no callback waits',
                     cause=f'{self.node_name} does not answer its parameter services',
                 )
             errors.expect_none()
