@@ -180,7 +180,7 @@ WRONG = [
     (
         DegreesInTheLimits,
         'rejects',
-        r'compare both angles with their limits, radians\(90\) and radians\(120\)',
+        r'compare both angles with their limits in radians, `pi / 2` and `2 \* pi / 3`',
     ),
     (NoLimits, 'rejects', 'without goal_callback in ActionServer'),
     (LimitsTheWrongWayRound, 'rejects', 'every comparison with NaN is False, so check for what'),

@@ -13,6 +13,7 @@ from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import stop_reasons
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -41,6 +42,8 @@ NAMES = {
     'unwrap': inspect.unwrap,  # `live` gives better advice, but does not run in a program
     'began': Duration(seconds=0.5),
     'client': ActionClient.__new__(ActionClient),
+    'handle': ServerGoalHandle.__new__(ServerGoalHandle),
+    'sent': ClientGoalHandle.__new__(ClientGoalHandle),
     'parameter': Parameter('rate_hz', value=5.0),
 }
 """What the lines of code may use."""
@@ -59,6 +62,8 @@ SERVER = ', so give it the node, the type, the name and the execute callback: Ac
 CLIENT = ", so give it the node, the type and the name alone: ActionClient(self, MoveArm, '/move"
 OF_GOAL = ', so call this method of the goal handle: it is the result of the future that send_goal'
 NO_RESULT = ', so call it without an argument, and return the result: return MoveArm.Result(posit'
+ENDS = ', so end the goal with a method that it has: goal_handle.succeed(), goal_handle.cance'
+REQUEST = ', so look into goal_handle.request, which has the fields of the goal'
 ACCEPT = ', so write ACCEPT or REJECT: GoalResponse and CancelResponse have these two names'
 VALUE = ', so take the value out of the parameter with .value'
 NO_GET_VALUE = ', so write .value in place of .get_parameter_value()'
@@ -121,6 +126,12 @@ def hint_of(error):
         ('client.tick()', ''),
         ('ServerGoalHandle.succeed(None, MoveArm.Result())', NO_RESULT),
         ('ServerGoalHandle.canceled(None, MoveArm.Result())', NO_RESULT),
+        ('handle.set_succeeded()', ENDS),
+        ('handle.cancelled()', ENDS),
+        ('handle.position', REQUEST),
+        ('handle.is_preempt_requested', ', so look at goal_handle.is_cancel_requested'),
+        ('bool(1)()', ', so write no parentheses behind what is True or False'),
+        ('sent.is_accepted', ', so look at goal_handle.accepted, which is True or False'),
         ('GoalResponse.ACCEPTED', ACCEPT),
         ('GoalResponse.accept', ACCEPT),
         ('CancelResponse.ACCEPTED', ACCEPT),
@@ -219,6 +230,12 @@ def test_only_a_whole_number_behind_the_value_of_a_parameter_may_be_a_decimal_co
             ', so write a parameter for each of them into its def, such as (self, request, '
             'response) for a service, (self, message) for a subscription, (self, future) for '
             'add_done_callback, and (self) for a timer',
+        ),
+        (
+            "TypeError: Expected <class 'std_msgs.msg._string.String'>, got <class 'sensor_ms… "
+            '(line 9, in <lambda>: self.create_subscription(kind, topic, lambda m: out.publish(m)',
+            ', so publish a message of the type of the topic; in a loop, write lambda message, '
+            'publisher=publisher: …, or each lambda uses the publisher of the last round',
         ),
         (
             'KeyError: 0 (line 27, in end: print(ENDS[future.result().status]))',

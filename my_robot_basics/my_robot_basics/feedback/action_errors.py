@@ -34,6 +34,33 @@ OF_ACTIONS = (
         'return MoveArm.Result(position=…)',
     ),
     Case(
+        pattern=r"'ServerGoalHandle' object has no attribute '(?:set_)?(?:succe|cancel|abort)",
+        to_do=', so end the goal with a method that it has: goal_handle.succeed(), '
+        'goal_handle.canceled() or goal_handle.abort()',
+    ),
+    Case(
+        pattern=r"'ServerGoalHandle' object has no attribute '(?:goal|position|speed)'",
+        to_do=', so look into goal_handle.request, which has the fields of the goal',
+    ),
+    Case(
+        pattern=r"'ServerGoalHandle' object has no attribute 'is_(?:preempt|cancell)",
+        to_do=', so look at goal_handle.is_cancel_requested, which is True or False',
+    ),
+    Case(
+        pattern=r"'ClientGoalHandle' object has no attribute '\w*accept",
+        to_do=', so look at goal_handle.accepted, which is True or False',
+    ),
+    Case(
+        pattern='built-in method publish_feedback of pybind11',
+        to_do=', so give each field of the feedback what it holds: a list of numbers for '
+        'position, and a single number for remaining',
+    ),
+    Case(
+        pattern="'bool' object is not callable",
+        to_do=', so write no parentheses behind what is True or False, such as '
+        'goal_handle.is_cancel_requested',
+    ),
+    Case(
         pattern='no running event loop',
         to_do=', so wait without asyncio, whose event loop does not run here: await a Future of '
         'rclpy that a timer sets',

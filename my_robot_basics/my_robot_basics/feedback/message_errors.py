@@ -28,6 +28,12 @@ OF_MESSAGES = (
         to_do=', so make an object of the class with parentheses, such as JointState()',
     ),
     Case(
+        pattern=r"Expected <class '[\w.]+'>, got <class '.*in <lambda>: .*\blambda \w+: "
+        r'\w+\.publish\(',
+        to_do=', so publish a message of the type of the topic; in a loop, write lambda message, '
+        'publisher=publisher: …, or each lambda uses the publisher of the last round',
+    ),
+    Case(
         pattern=r"Expected <class '[\w.]+'>, got <class '"
         r'|\bPublisher\.publish\(\) got an unexpected keyword',
         to_do=', so publish a message of the type of the topic, such as String(data=…)',

@@ -40,6 +40,14 @@ def ends_too_soon() -> str:
     )
 
 
+def never_moves() -> str:
+    """Advice if a goal succeeds at once, and the arm is still where it was."""
+    return (
+        'the goal ends at once, and the arm stays where it was: the loop of the execute callback '
+        'does not run, so see that its condition holds when each goal begins, the second one, too'
+    )
+
+
 def _why_rejected(
     server: OpenAction, sent: SentGoal, former: SentGoal | None, before: GoalAnswers
 ) -> str:

@@ -13,6 +13,7 @@ from my_robot_basics.checks.arm.arm_progress import is_under_way
 from my_robot_basics.checks.arm.arm_results import expect_result, is_near
 from my_robot_basics.checks.arm.cancel_moments import moment_to_cancel
 from my_robot_basics.checks.arm.slow_moves import wait_unless_it_crawls
+from my_robot_basics.checks.arm.speed_hints import why_speed
 from my_robot_basics.checks.arm.watched_arm import Pose, WatchedArm, far_rad, goal
 from my_robot_basics.feedback.errors import CheckFailed, expect, fail
 
@@ -54,7 +55,7 @@ def expect_cancels(
             expected=f'a move that takes {wanted_sec:.1f} s',
             seen='it over before it could be cancelled',
             hint=(sent.is_over() and arm.why_ended(sent))
-            or 'move the arm a little in each step, by speed × the time of the step',
+            or why_speed(arm, position, sent.goal.speed, seconds=arm.seconds(sent)),
             cause='the move is over too soon to be cancelled',
         )
         _cancel(arm, sent, wanted_sec=wanted_sec)

@@ -96,7 +96,7 @@ def _arrive(arm: WatchedArm, position: Pose, *, speed: float) -> SentGoal:
             none=f'none in {most_sec:.0f} s, for a move of {wanted_sec:.1f} s',
         )
     expect_succeeded(arm, sent)
-    expect_arrived(sent, position, start=arm.start)
+    expect_arrived(sent, position, start=arm.start, why=arm.why_unmoved(sent))
     return sent
 
 

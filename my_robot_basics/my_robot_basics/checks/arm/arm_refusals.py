@@ -87,6 +87,6 @@ def _why_wrong(wrong: MoveArm.Goal) -> str:
             'limit in radians'
         )
     return (
-        'compare both angles with their limits, radians(90) and radians(120): the positions are '
-        'in radians'
+        'compare both angles with their limits in radians, `pi / 2` and `2 * pi / 3`: the '
+        'positions are in radians'
     )

@@ -14,6 +14,7 @@ from my_robot_basics.checks.arm.arm_remaining import expect_remaining
 from my_robot_basics.checks.arm.arm_report_times import longest_same_sec, rate_hz
 from my_robot_basics.checks.arm.arm_results import IN_DEGREES
 from my_robot_basics.checks.arm.slow_moves import wait_unless_it_crawls
+from my_robot_basics.checks.arm.speed_hints import JUMPS
 from my_robot_basics.checks.arm.watched_arm import Pose, WatchedArm, far_rad
 from my_robot_basics.feedback.errors import fail
 
@@ -32,6 +33,7 @@ NONE_BLOCKED = (
     'all feedback is lost: write `await sleep(self, …)`'
 )
 """A loop without waits blocks the node's other callbacks, and so ignores the robot's clock."""
+FEW = 'publish feedback in each step of the move, and take at least ten a second'
 FEWEST = 5
 PROGRESS_PART = 0.06
 """How far the arm may be ahead of a steady move or behind it, as a part of the way."""
@@ -100,7 +102,7 @@ class MoveReport:
             fail(
                 expected=f'feedback at {WANTED_HZ:g} Hz or more',
                 seen=one if count == 1 else many,
-                hint='publish feedback in each step of the move, and take at least ten a second',
+                hint=JUMPS if count < FEWEST and self.arm.was_early(self.sent, self.end) else FEW,
                 cause='there is too little feedback',
                 doubt=self.arm.doubt(self.sent, self.end),
             )

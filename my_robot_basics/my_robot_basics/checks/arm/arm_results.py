@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from my_robot_basics.checks.actions.accepted_goals import never_moves
 from my_robot_basics.checks.actions.action_ends import SentGoal
 from my_robot_basics.checks.arm.watched_arm import Pose, WatchedArm
 from my_robot_basics.checks.values import joints
@@ -65,14 +66,14 @@ def why_no_success(arm: WatchedArm, sent: SentGoal) -> str:
     return 'call goal_handle.succeed() when the arm is there'
 
 
-def expect_arrived(sent: SentGoal, position: Pose, *, start: Pose) -> None:
-    """Expect the result to hold that position (rad). Raises CheckFailed."""
+def expect_arrived(sent: SentGoal, position: Pose, *, start: Pose, why: str = '') -> None:
+    """Expect the result to hold that position (rad); `why` not, if known. Raises CheckFailed."""
     seen = list(sent.result.position)
     if not is_near(seen, position):
         fail(
             expected=f'result.position {[round(each, 3) for each in position]}',
             seen=shorten([round(each, 3) for each in seen]),
-            hint=why_off(seen, position, start=start),
+            hint=why or why_off(seen, position, start=start),
             cause='the result does not hold the position',
         )
 
@@ -88,11 +89,13 @@ def expect_there(sent: SentGoal, position: Pose) -> None:
         return
     is_close = is_near(seen, position, within_rad=CLOSE_RAD)
     why = NOT_THERE if is_close else why_off(seen, position, start=())
+    if why in (NOT_THERE, ELSEWHERE):
+        why = NOT_THERE if told else never_moves()
     if not is_near(seen, position, within_rad=ASIDE_RAD):
         fail(
             expected=f'the arm at {[round(each, 3) for each in position]} after a goal there',
             seen=f'it at {shorten([round(each, 3) for each in seen])}, as the result says',
-            hint=NOT_THERE if why == ELSEWHERE else why,
+            hint=why,
             cause='the arm is not where a goal has brought it',
         )
 

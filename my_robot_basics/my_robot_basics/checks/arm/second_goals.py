@@ -9,6 +9,7 @@ from my_robot_basics.checks.arm.arm_looks import look
 from my_robot_basics.checks.arm.arm_progress import is_under_way
 from my_robot_basics.checks.arm.arm_results import is_near
 from my_robot_basics.checks.arm.slow_moves import wait_unless_it_crawls
+from my_robot_basics.checks.arm.speed_hints import why_speed
 from my_robot_basics.checks.arm.watched_arm import (
     EARLY_PART,
     Pose,
@@ -103,7 +104,7 @@ def _expect_only_fast(
             is_refused,
             expected=f'a move that takes {wanted_sec:.1f} s',
             seen='it over before a second goal could be rejected',
-            hint='move the arm a little in each step, by speed × the time of the step',
+            hint=why_speed(arm, position, moving.goal.speed, seconds=arm.seconds(moving)),
             cause='the move is over too soon for a second goal',
         )
     fail(

@@ -9,6 +9,7 @@ JUMP_SEC = 0.3
 """If a move takes no longer than this, the arm jumps to its goal."""
 ALIKE = 0.03
 """How near a wrong speed has to be to that of a known mistake, as a part of it."""
+JUMPS = 'the arm jumps: move it a little in each step, by speed × the time of the step'
 BOTH = 'both joints move at once: start and arrive together'
 FROM_HERE = 'start from where the arm is, at each goal'
 AT_ONCE = (
@@ -40,5 +41,5 @@ def why_speed(
     if found:
         return found[0]
     if seconds <= JUMP_SEC:
-        return 'the arm jumps: move it a little in each step, by speed × the time of the step'
+        return JUMPS
     return BY_TIME

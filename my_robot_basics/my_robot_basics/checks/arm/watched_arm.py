@@ -8,7 +8,11 @@ from dataclasses import dataclass
 from rclpy.qos import ReliabilityPolicy
 
 from arm_interfaces.action import MoveArm
-from my_robot_basics.checks.actions.accepted_goals import ends_too_soon, expect_accepted
+from my_robot_basics.checks.actions.accepted_goals import (
+    ends_too_soon,
+    expect_accepted,
+    never_moves,
+)
 from my_robot_basics.checks.actions.action_ends import TERMINAL, SentGoal
 from my_robot_basics.checks.actions.open_action import OpenAction
 from my_robot_basics.checks.arm.waits_in_vain import is_in_vain
@@ -34,6 +38,8 @@ SHORTER_PART, TURN = 0.35, 7.7
 position, in a way that only looks random; TURN is a factor for that."""
 EARLY_PART = 0.8
 """A move that takes less than this part of its time was not made at the requested speed."""
+STAYS_RAD = 0.005
+"""An arm that is as near as this to its start has not moved."""
 FEW, ON_SEC = 3, 1.0
 """A move goes on after its goal's end if FEW feedback messages come within ON_SEC."""
 STALLED_PART = 0.05
@@ -103,17 +109,23 @@ class WatchedArm:
         return self.server.log.raised(since_ns=sent.sent_ns) or self.why_too_soon(sent)
 
     def why_too_soon(self, sent: SentGoal) -> str:
-        """What to try if feedback goes on after the goal's terminal status; or ''.
-
-        It waits up to ON_SEC for such feedback.
-        """
+        """What to try if feedback comes in ON_SEC after the end, or if nothing moved; or ''."""
 
         def goes_on() -> bool:
             return sum(sent.over_ns() < at_ns for at_ns, _ in sent.feedback()) >= FEW
 
-        if not sent.over_ns() or not self.time.wait(goes_on, seconds=ON_SEC):
+        if sent.over_ns() and self.time.wait(goes_on, seconds=ON_SEC):
+            return ends_too_soon()
+        return self.why_unmoved(sent)
+
+    def why_unmoved(self, sent: SentGoal) -> str:
+        """What to try if a goal succeeded early, and its result is where the arm was; or ''."""
+        early = sent.status == 'succeeded' and self.was_early(sent, sent.goal.position)
+        if not early or sent.feedback() or not self.has_result(sent):
             return ''
-        return ends_too_soon()
+        seen = list(sent.result.position)
+        stays = len(seen) == len(self.start) and far_rad(self.start, seen) < STAYS_RAD
+        return never_moves() if stays else ''
 
     def why_no_feedback(self, sent: SentGoal) -> str:
         """Why there may be no feedback on an ended goal, if that is known; or ''."""

@@ -117,6 +117,8 @@ def why_wrong(message: Any, pose_deg: Sequence[float], *, others_right: bool = F
     if len(message.name) == len(right) and _adds_to_others(list(message.position), pose_deg):
         return why_off(list(message.position), pose_deg, others_right=others_right)
     if seen.keys() != right.keys():
+        if len(right) < len(message.name) == len(message.position) and {*message.name} == {*right}:
+            return why_names(message.name, [*right])
         return f'give each message two positions, and the names {" and ".join(right)}'
     return why_off([seen[name] for name in right], pose_deg, others_right=others_right)
 
@@ -158,7 +160,7 @@ def why_off(
         return 'close: use radians() itself, and do not round'
     off = [(a - b) % math.tau for a, b in zip(seen, right, strict=True)]
     if not found and _are_near([min(each, math.tau - each) for each in off], [0.0] * len(off)):
-        return 'it is a whole turn too far: convert the angle as it is given, without % 360'
+        return 'it is a whole turn too far: convert the angle as it is given, without a modulo (%)'
     return next(iter(found), CONVERT_EACH if others_right else CONVERT)
 
 
