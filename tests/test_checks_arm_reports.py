@@ -101,13 +101,28 @@ def test_feedback_that_comes_at_once_and_too_early_comes_from_a_loop_without_wai
 ):
     _, parts = evenly(2.0)
     reported = report(parts, [0.01 + i * step_sec for i in range(len(parts))], DRIVEN)
-    with contextlib.nullcontext() if is_right else pytest.raises(CheckFailed, match='at once'):
+    with contextlib.nullcontext() if is_right else pytest.raises(CheckFailed, match='no step'):
         reported.expect_enough()
 
 
 def test_frequent_feedback_on_a_move_that_takes_its_time_is_enough():
     times, parts = evenly(2.0, step_sec=0.001)
     report(parts, times, DRIVEN).expect_enough()
+
+
+@pytest.mark.parametrize(
+    ('step_sec', 'stalled_share', 'is_right'),
+    [(0.00105, 0.0, True), (0.0005, 0.0, False), (0.0005, 0.5, False)],
+)
+def test_feedback_of_a_loop_that_never_sleeps_is_refused_however_much_of_it_arrives(
+    step_sec, stalled_share, is_right
+):
+    times, parts = evenly(1.0, step_sec=step_sec)
+    arrived = [i for i in range(len(times)) if i % 500 < 400]  # a full queue loses some
+    times, parts = ([each[i] for i in arrived] for each in (times, parts))
+    reported = report(parts, times, Wall(stalled_share))
+    with contextlib.nullcontext() if is_right else pytest.raises(CheckFailed, match='no step'):
+        reported.expect_enough()
 
 
 @pytest.mark.parametrize(('silent_sec', 'is_right'), [(0.3, True), (0.4, False)])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from action_msgs.msg import GoalInfo, GoalStatus
-from rclpy.qos import QoSProfile, qos_profile_action_status_default
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 from unique_identifier_msgs.msg import UUID
 
@@ -132,7 +132,8 @@ class ActionEnds:
             watcher,
             topic_name=f'{name}/_action/status',
             type_=impl.GoalStatusMessage,
-            qos_profile=qos_profile_action_status_default,
+            # of rclpy's depth, 1, the next goal's status would replace the end of the one before
+            qos_profile=QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL),
         )
         self._read = 0
         self._statuses: dict[bytes, list[tuple[int, str]]] = {}

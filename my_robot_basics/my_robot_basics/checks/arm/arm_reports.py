@@ -21,8 +21,9 @@ from my_robot_basics.feedback.errors import fail
 WANTED_HZ, LEAST_HZ = 10.0, 9.5
 LARGEST_GAP_SEC = 0.35
 """A longer gap between two messages is a pause."""
-FLOOD_HZ = 500.0
-"""Feedback at a higher rate comes from a loop that does not wait."""
+FLOOD_HZ, NO_SLEEP_HZ = 500.0, 1000.0
+"""Feedback at a higher rate comes from a loop that does not wait: on a move that ends too early;
+and on the wall clock, where a loop that sleeps for a millisecond takes longer for each step."""
 NO_WAIT = (
     'no step of the loop waits, and much of the feedback may be lost: write `await sleep(self, …)`'
 )
@@ -90,12 +91,13 @@ class MoveReport:
             )
         seconds = self.arm.seconds(self.sent)
         rate = rate_hz(self.times, is_driven=self.arm.time.is_driven) if count > 1 else 0.0
-        if rate > FLOOD_HZ and self.arm.was_early(self.sent, self.end):
+        never_sleeps = rate > NO_SLEEP_HZ and not self.arm.time.is_driven
+        if never_sleeps or (rate > FLOOD_HZ and self.arm.was_early(self.sent, self.end)):
             fail(
-                expected='feedback while the arm moves',
-                seen=f'{count} messages at once',
+                expected='feedback in steps that wait',
+                seen=f'{count} messages without a wait between them',
                 hint=NO_WAIT,
-                cause='the feedback comes at once',
+                cause='no step of the move waits',
             )
         if count < FEWEST or rate < LEAST_HZ:
             one, many = f'1 message in {seconds:.1f} s', f'{count} messages in {seconds:.1f} s'
