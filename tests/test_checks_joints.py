@@ -106,7 +106,7 @@ def test_a_good_approximation_agrees_for_every_angle_and_a_rough_one_not_for_the
         (
             message(0.5236, -1.5708, 0.5236, -1.5708, name=NAMES * 2),
             '4 positions with 4 names',
-            'give each message two',
+            'it adds to the names of the call before',
         ),
         (
             message(0.1, 0.2, 0.5236, -1.5708),

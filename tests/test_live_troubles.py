@@ -118,18 +118,24 @@ def test_unfinished_returns_the_line_of_a_callback_that_keeps_a_node_busy(monkey
     assert troubles.blocking_line('/c') == ''
 
 
-@pytest.mark.parametrize(
-    ('own', 'executor', 'is_idle'),
-    [(True, None, True), (True, 'spins', False), (False, None, False)],
-    ids=['left alone', 'spun', 'another node'],
-)
-def test_a_node_of_the_answer_that_nothing_spins_is_idle(own, executor, is_idle):
+def test_a_node_of_the_answer_that_nothing_spins_is_refused(monkeypatch):
     class Answer:
-        pass
+        executor = None
 
-    node = Answer() if own else SimpleNamespace()
-    node.executor = executor
-    assert exercise._is_idle(Answer, node) == is_idle
+    earlier = type('Answer', (), {'executor': None})  # of the same cell, before it was changed
+    for node, words in ((Answer(), 'leave out the line'), (earlier(), 'from before it was')):
+        monkeypatch.setattr(exercise, 'nodes_here', lambda node=node: [node])
+        with pytest.raises(exercise.NotRunnable, match=words):
+            exercise._expect_no_idle_node(Answer)
+
+
+@pytest.mark.parametrize(
+    ('name', 'executor'), [('Answer', 'spins'), ('Other', None)], ids=['spun', 'another node']
+)
+def test_any_other_node_is_not(monkeypatch, name, executor):
+    others = [type(name, (), {'executor': executor})()]
+    monkeypatch.setattr(exercise, 'nodes_here', lambda: others)
+    exercise._expect_no_idle_node(type('Answer', (), {}))
 
 
 def test_a_panel_names_the_line_of_an_exception_in_the_language_of_the_lesson(monkeypatch, capsys):
