@@ -76,6 +76,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     tier.addoption('--shard', metavar='K/N', help='of all files every Nth, from the Kth on')
     tier.addoption('--slow', action='store_true', help='everything, also what takes long')
+    parser.addoption('--answer', metavar='NAME', help='of tests/answers/: only those of that name')
     parser.addoption(
         '--no-isolation',
         action='store_true',
