@@ -1,5 +1,6 @@
 """Which clock an arm follows, from its feedback while the robot's clock stands or moves."""
 
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -43,8 +44,8 @@ def test_a_clock_is_held_longer_on_a_busy_machine(monkeypatch, after_sec, stalle
     monkeypatch.setattr(pressure, 'time', SimpleNamespace(monotonic=lambda: now[0]))
     monkeypatch.setattr(pressure, 'stalled_sec', lambda: stalled_share * now[0])
     monkeypatch.setattr(pressure, 'idle_sec', lambda: now[0])
-    time = DrivenTime(SimpleNamespace(), clock, step_ns=50_000_000, beat=lambda: 0)
-    held = time.hold(lambda: now[0] >= after_sec, **followed_clocks.HELD_SEC)
+    driven = DrivenTime(SimpleNamespace(), clock, step_ns=50_000_000, beat=lambda: 0)
+    held = driven.hold(lambda: now[0] >= after_sec, **followed_clocks.HELD_SEC)
     assert held == is_done
 
 
@@ -105,9 +106,9 @@ def test_an_arm_gets_fine_steps_if_it_keeps_up_with_these(adds_ns, keeps_up):
         feedback_count=lambda: len(told),
         goal=SimpleNamespace(speed=0.2),
     )
-    time = Stepped(told, adds_ns)
-    assert followed_clocks._keeps_up_with_fine_steps(time, sent) == keeps_up
-    assert time.step_ns == followed_clocks.FINE_NS
+    driven = Stepped(told, adds_ns)
+    assert followed_clocks._keeps_up_with_fine_steps(driven, sent) == keeps_up
+    assert driven.step_ns == followed_clocks.FINE_NS
 
 
 def test_an_arm_that_reports_next_to_nothing_gets_no_fine_steps():
@@ -118,6 +119,35 @@ def test_an_arm_that_reports_next_to_nothing_gets_no_fine_steps():
         feedback_count=lambda: len(told),
         goal=SimpleNamespace(speed=0.2),
     )
-    time = Stepped(told, 10_000_000)
-    time.let_pass = lambda *_, **__: None
-    assert not followed_clocks._keeps_up_with_fine_steps(time, sent)
+    driven = Stepped(told, 10_000_000)
+    driven.let_pass = lambda *_, **__: None
+    assert not followed_clocks._keeps_up_with_fine_steps(driven, sent)
+
+
+@pytest.mark.parametrize(
+    ('told_late', 'is_free'), [(True, False), (False, True)], ids=['after it', 'during it']
+)
+def test_an_answer_after_the_move_is_none_during_it(monkeypatch, told_late, is_free):
+    """If the status with the end is lost at first, the answer seems to come during the move."""
+    over_ns = []
+
+    def end(*_, is_free):
+        assert is_free
+        over_ns.append(time.time_ns() + (-1 if told_late else 1) * 10**8)
+
+    client = SimpleNamespace(
+        service_is_ready=lambda: True, call_async=lambda _: SimpleNamespace(done=lambda: True)
+    )
+    watcher = SimpleNamespace(
+        node=SimpleNamespace(create_client=lambda *_: client, destroy_client=lambda _: None),
+        spin_until=lambda done, timeout_sec: done(),
+        spin_until_free=lambda done, free_sec: done(),
+    )
+    sent = SimpleNamespace(is_over=lambda: bool(over_ns), over_ns=lambda: sum(over_ns))
+    arm = SimpleNamespace(
+        server=SimpleNamespace(watcher=watcher, node_name='/move_arm_server'),
+        start=(0.0, 0.0),
+        send=lambda goal: sent,
+    )
+    monkeypatch.setattr(followed_clocks, 'wait_for_probe', end)
+    assert followed_clocks._answers_while_it_moves(arm) == is_free
