@@ -16,7 +16,7 @@ from grader.course import Course
 from grader.notebook.restore import KEY, restore
 from grader.notebook.submission import read_submission
 from grader.report import feedback as module
-from grader.report import page_parts
+from grader.report import page, page_parts
 from grader.report.feedback import write_feedback
 from grader.storage.database import open_database
 from grader.storage.gradebook import store
@@ -130,6 +130,20 @@ def test_the_title_of_a_check_fits_the_part_that_failed():
     assert page_parts._check(cell).title == 'Checked at grading, beyond “The first two are right”'
     cell.source = '"""The others are right"""\nprint("checked at grading")'
     assert page_parts._check(cell).title == 'The others are right'
+
+
+@pytest.mark.parametrize(
+    ('text', 'shown'),
+    {
+        'degrees are not radians': 'Degrees are not radians',
+        'a stamp of 0': 'A stamp of 0',
+        'x and y are swapped': 'x and y are swapped',
+        'x 和 y 颠倒了': 'x 和 y 颠倒了',
+        'position 里有两个角度': 'position 里有两个角度',
+    }.items(),
+)
+def test_a_sentence_begins_with_a_capital_letter_if_its_first_word_is_no_name(text, shown):
+    assert page.capitalised(text) == shown
 
 
 def test_advice_with_colons_is_separated_from_the_rest_of_a_reason():

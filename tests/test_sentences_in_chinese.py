@@ -54,6 +54,18 @@ WITH_COLONS = {
         'seen': "被拒绝了：Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'",
         'hint': '参数的类型就是默认值的类型：声明时写 5.0，不要写 5',
     },
+    'expected `f(1)` to return a bool, saw an int (1): print(type(…)) of the value shows what it '
+    'is': {
+        'expected': '`f(1)` 返回 bool',
+        'seen': 'int (1)',
+        'hint': '对这个值用 print(type(…))，就能看到它是什么',
+    },
+    'expected use_sim_time, another parameter, to be set, saw it refused: use 1 to 50 Hz: change '
+    'nothing when you refuse a value': {
+        'expected': '设置另一个参数 use_sim_time',
+        'seen': '被拒绝了：use 1 to 50 Hz',
+        'hint': '拒绝一个值时，什么也不要改变',
+    },
     LONG: {
         'expected': '每个字符串都定义它的表格所说的内容',
         'seen': '`turns_msg` 里是别的内容',
@@ -149,6 +161,13 @@ def test_sentences_of_topic_doctor_and_live_are_translated_into_chinese(english,
 
 
 OF_CHECKS = {
+    "the execute callback raised an exception ('A' object has no attribute 'b')": (
+        "执行回调抛出了异常（'A' object has no attribute 'b'）"
+    ),
+    "it raised an exception a moment ago ('A' object has no attribute 'b'), and the goal was"
+    ' aborted': "它刚才抛出了异常（'A' object has no attribute 'b'），目标因此被中止",
+    '3 goals in place of 2': '发出了 3 个目标，而应当是 2 个',
+    'the elbow-up pose (1.1, -1.2) on /pose': '肘上姿态，即 /pose 上的 (1.1, -1.2)',
     '0.50 Hz over 10 s (1 message)': '10 s 内为 0.50 Hz（1 条消息）',
     '7.0 Hz over 6 s (42 messages), and several messages at once': (
         '6 s 内（42 条消息），7.0 Hz，其中有几条消息同时到达'
@@ -167,6 +186,7 @@ OF_CHECKS = {
         "它已经结束：退出码 1，ModuleNotFoundError: No module named 'x'"
     ),
     'it has ended: ended by SIGKILL': '它已经结束：被 SIGKILL 结束',
+    'ended by SIGINT, KeyboardInterrupt': '被 SIGINT 结束，KeyboardInterrupt',
     'it succeeded too soon': '太早就变为 succeeded',
     'it aborted in the end': '最后变为 aborted',
     'it accepted in 10 s': '10 s 之后状态为 accepted',

@@ -27,7 +27,8 @@ _TAGS = {'p', 'em', 'strong', 'code', 'pre', 'ul', 'ol', 'li', 'blockquote', 'h4
 _TAGS |= {'thead', 'tbody', 'tr', 'th', 'td'}
 _CODE = HtmlFormatter(style='xcode', nowrap=True)
 _CODE_IN_THE_DARK = HtmlFormatter(style='github-dark', nowrap=True)
-_FIRST_WORD = re.compile(r'\A[a-z]+(?=[ ,:;]|\Z)')
+_FIRST_WORD = re.compile(r'\A(a|[a-z]{2,})(?=[ ,:;]|\Z)(?!.*[\u3400-\u9fff])', re.DOTALL)
+"""An English word; one letter alone, as x, and a word that begins a Chinese text are names."""
 
 
 def render_page(as_json: dict, about: dict, plain: str = '') -> str:
@@ -83,7 +84,7 @@ def _words(text: str) -> Markup:
     return Markup(re.sub('`([^`]+)`', r'<code>\1</code>', str(escape(text))))
 
 
-def _sentence(text: str) -> str:
+def capitalised(text: str) -> str:
     """Capitalise the first word, unless it is a name in the code."""
     return _FIRST_WORD.sub(lambda word: word[0].capitalize(), text)
 
@@ -116,7 +117,7 @@ def _template(language: str, *, is_plain: bool) -> Template:
             'colour': escape if is_plain else _colour,
             'rich': _typed if is_plain else _rich,
             'words': _words,
-            'sentence': _sentence,
+            'sentence': capitalised,
             'number': _number,
             'said': partial(in_language, language),
         },

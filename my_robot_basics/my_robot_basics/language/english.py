@@ -18,7 +18,8 @@ _NAME = re.compile(
 _RAISED = re.compile(
     r'[\w.]*(Error|Exception|Interrupt|Exit)(: .*| \(line .*\))?'
     r'|[\w.]+(: .*)? \((\S+, )?line \d+, in \S+: .*\)'
-    r"|Wrong parameter type, expected '\S+' got '\S+'",
+    r"|Wrong parameter type, expected '\S+' got '\S+'"
+    r"|(type object )?'\S+'( object)? has no attribute '\w+'",  # as rclpy logs it
     re.DOTALL,
 )
 """The message of an exception, or of rclpy about a parameter's type: it stays English."""

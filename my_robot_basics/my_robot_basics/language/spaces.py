@@ -6,8 +6,10 @@ QUOTED = re.compile(r'`[^`]*`|\'[^\']*\'|"[^"]*"')
 _HAN = '[\u3400-\u9fff（），。；：]'
 _IN_HAN = re.compile(rf'({QUOTED.pattern})|(?<={_HAN}) (?={_HAN})')
 """A space between Chinese characters; or quoted text, which is kept."""
-_ARTICLE = re.compile(rf'({QUOTED.pattern})|(?:(?<={_HAN})|(?<={_HAN} ))an? (?=[A-Za-z])')
-"""An English article after Chinese words; or quoted text, which is kept."""
+_ARTICLE = re.compile(
+    rf'({QUOTED.pattern})|(?:(?<={_HAN})|(?<={_HAN} ))an? (?=[A-Za-z])|^an? (?=\w+(?: \(|$))'
+)
+"""An English article after Chinese words, or before a single word; or quoted text, kept."""
 
 
 def remove_spaces(text: str) -> str:

@@ -47,8 +47,8 @@ class ServerLog:
         if not said:
             return ''
         said = said.removeprefix(_RAISED).strip()
-        why = hidden.student_text(shorten(said, 100))
-        raised = f'the execute callback raised an exception ({why})' if said else _NO_TEXT
+        msg = hidden.student_text(shorten(said, 100))
+        raised = f'the execute callback raised an exception ({msg})' if said else _NO_TEXT
         raised += hint_for_exception(said)
         # rclpy catches what this callback raises: its spin goes on, as it does for no other
         # in a package, the check starts the node, after the build

@@ -172,7 +172,7 @@ class Drawing:
         expect(
             len(self._servers.goals) == self._goals,
             expected=f'one goal for {MOVE_ARM} at a time, and one for each target',
-            seen=f'{len(self._servers.goals)} goals for {self._goals}',
+            seen=f'{len(self._servers.goals)} goals in place of {self._goals}',
             hint='send the next goal when the result of the one before is there',
             cause='goals are sent at once, or too many of them',
         )
