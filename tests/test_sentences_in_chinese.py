@@ -47,11 +47,11 @@ WITH_COLONS = {
         'hint': "它的回调抛出了 AttributeError: no 'send'（第 1 行，在 f 里：self.send(m)）；"
         '请先改正它',
     },
-    'expected rate_hz = 5.0 to be set, saw it refused: Wrong parameter type, expected '
-    "'Type.INTEGER' got 'Type.DOUBLE': a parameter has the type of its default value: "
+    'expected rate_hz = 5.0 to be set, saw it refused: `Wrong parameter type, expected '
+    "'Type.INTEGER' got 'Type.DOUBLE'`: a parameter has the type of its default value: "
     'declare it with 5.0, not 5': {
         'expected': '设置 rate_hz = 5.0',
-        'seen': "被拒绝了：Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'",
+        'seen': "被拒绝了：`Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'`",
         'hint': '参数的类型就是默认值的类型：声明时写 5.0，不要写 5',
     },
     'expected `f(1)` to return a bool, saw an int (1): print(type(…)) of the value shows what it '
@@ -60,10 +60,10 @@ WITH_COLONS = {
         'seen': 'int (1)',
         'hint': '对这个值用 print(type(…))，就能看到它是什么',
     },
-    'expected use_sim_time, another parameter, to be set, saw it refused: use 1 to 50 Hz: change '
-    'nothing when you refuse a value': {
+    'expected use_sim_time, another parameter, to be set, saw it refused: `use 1 to 50 Hz. Min: '
+    '1.0, max: 50.0`: change nothing when you refuse a value': {
         'expected': '设置另一个参数 use_sim_time',
-        'seen': '被拒绝了：use 1 to 50 Hz',
+        'seen': '被拒绝了：`use 1 to 50 Hz. Min: 1.0, max: 50.0`',
         'hint': '拒绝一个值时，什么也不要改变',
     },
     LONG: {

@@ -52,10 +52,10 @@ def expect_leaves_others_alone(parameters: NodeParameters, name: str) -> None:
         expect_a_result(result)
         [same] = parameters.set(name, parameters.get(name))
         _expect_yes_where_nothing_changes(name, same)
-        msg = student_text(shorten(result.reason))
+        reason = _in_code(result.reason)
         fail(
             expected='use_sim_time, another parameter, to be set',
-            seen=f'it refused: {msg}',
+            seen=f'it refused: `{reason}`',
             hint='your callback gets each parameter that is set: check only those whose name is '
             f"'{name}'",
             cause='your callback refuses other parameters',
@@ -148,10 +148,10 @@ def fail_refused(name: str, value: float, result: SetParametersResult) -> NoRetu
             hint = "a parameter has the type of its default value: declare it with 5.0, not '5.0'"
     elif _READ_ONLY in result.reason:
         hint = 'nobody can set a read-only parameter: declare it without read_only=True'
-    msg = student_text(shorten(result.reason))
+    reason = _in_code(result.reason)
     fail(
         expected=f'{name} = {value!r} to be set',
-        seen=f'it refused: {msg}',
+        seen=f'it refused: `{reason}`',
         hint=hint,
         cause=f'{name} is not a double' if is_type else 'a value within the limits is refused',
     )
@@ -166,3 +166,8 @@ def expect_a_result(result: SetParametersResult) -> None:
         hint='end each branch of it with return SetParametersResult(successful=…)',
         cause='your callback returns no SetParametersResult',
     )
+
+
+def _in_code(reason: str) -> str:
+    """Return a node's reason as it is shown between backticks: whatever it says, untranslated."""
+    return student_text(shorten(reason).replace('`', "'"))
