@@ -12,6 +12,8 @@ from my_robot_basics.feedback.errors import shorten, shorten_exception
 from my_robot_basics.feedback.rclpy_names import OWN_ATTRIBUTES
 
 _NONE = '', '', ''
+_WAITS = 'wait', 'sleep', 'spin'
+"""A callback at a line with one of these words waits by itself."""
 
 
 def last_raised(node_name: str) -> str:
@@ -43,6 +45,12 @@ def blocking_line(node_name: str) -> str:
     """Return the line at which a callback of that node blocks all others, or ''."""
     body = reply_value(wire.request(op='unfinished', name=node_name))
     return shorten(body) if isinstance(body, str) else ''
+
+
+def waits_in_callback(node_name: str) -> bool:
+    """Whether a callback blocks that node and waits by itself, and not for a processor."""
+    line = blocking_line(node_name)
+    return any(word in line for word in _WAITS)
 
 
 def sleeps_on(node_name: str, seconds: float) -> tuple[int, str]:

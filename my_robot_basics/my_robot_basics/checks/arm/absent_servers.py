@@ -23,8 +23,6 @@ TIMES = 3
 """How many requests the client has to answer: it handles the message between two of them."""
 ARRIVED_SEC = 2.0
 """How long to wait until DDS acknowledges the message."""
-WAITS = 'wait', 'sleep', 'spin'
-"""A callback at a line with one of these words waits by itself, and not for a processor."""
 
 
 def publish_in_vain(server: ServedAction, message: Any) -> None:
@@ -53,8 +51,7 @@ def _expect_answer(server: ServedAction, name: str, client: Client) -> None:
     watch, asked = Stopwatch(), client.call_async(NOTHING)
     if server.watcher.spin_until(asked.done, timeout_sec=FIRST_SEC):
         return
-    line = node_troubles.blocking_line(name)
-    is_waiting = any(word in line for word in WAITS)
+    is_waiting = node_troubles.waits_in_callback(name)
     while watch.free_sec() < AWAY_SEC and watch.wall_sec() < MOST_SEC:
         if server.watcher.spin_until(asked.done, timeout_sec=LOOK_SEC):
             return

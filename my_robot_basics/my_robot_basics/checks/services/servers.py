@@ -12,6 +12,7 @@ from my_robot_basics.checks.recordings.recorder import Recorder
 from my_robot_basics.checks.recordings.recording import Recording
 from my_robot_basics.checks.services import responses
 from my_robot_basics.checks.services.holding_server import HoldingServer
+from my_robot_basics.checks.services.late_answers import comes_in_time
 from my_robot_basics.checks.services.responses import MadeMessages, MadeOf, made_of_none
 from my_robot_basics.checks.services.sole_server import expect_no_other, wait_until_known
 from my_robot_basics.checks.services.waiting_clients import WaitingClient
@@ -140,9 +141,8 @@ class Server(HoldingServer):
         def received() -> list[Any]:
             return self._answers.messages()[self._seen :]
 
-        if self._watcher.spin_until_free(
-            lambda: any(map(is_right, received())), free_sec=TIMEOUT_SEC
-        ):
+        comes, names = (lambda: any(map(is_right, received()))), self._answers.publishers()
+        if comes_in_time(self._watcher, comes, free_sec=TIMEOUT_SEC, names=names):
             self._raised.expect_none()
             return next(filter(is_right, received()))
         others, wrong = received(), cause or f'a wrong message on {self._answers.topic_name}'
