@@ -9,6 +9,7 @@ from ik_clients import IKClient, check_asks, check_never_blocks, server
 from my_robot_basics.checks import CheckFailed, ik, topic
 from my_robot_basics.checks.services import servers
 from my_robot_basics.graph.watcher import Watcher
+from std_msgs.msg import Int64
 
 from arm_interfaces.srv import SolveIK
 
@@ -74,10 +75,7 @@ class AwaitsInItsOnlyGroup(IKClient):
         self.answer(await self.client.call_async(SolveIK.Request(target=target)))
 
 
-WAITING = [Calls, SpinsInside, Sleeps, AwaitsInItsOnlyGroup]
-
-
-@pytest.mark.parametrize('node_class', WAITING)
+@pytest.mark.parametrize('node_class', [Calls, SpinsInside, AwaitsInItsOnlyGroup])
 @pytest.mark.usefixtures('impatient')
 def test_waiting_inside_a_callback_fails_with_the_cause(run, node_class):
     run(node_class)
@@ -87,6 +85,13 @@ def test_waiting_inside_a_callback_fails_with_the_cause(run, node_class):
         'expected the count on /ik_client/alive to go on while the server takes its time, '
         f'saw it stand still: {WAITS}'
     )
+
+
+@pytest.mark.usefixtures('impatient')
+def test_sleeping_until_the_answer_comes_fails_with_the_line(run):
+    run(Sleeps)
+    with pytest.raises(CheckFailed, match=r'it sleeps inside a callback \(line \d+: time.sleep'):
+        check_never_blocks()
 
 
 @pytest.mark.parametrize('node_class', [Calls, SpinsInside])
@@ -136,6 +141,53 @@ def test_counting_ahead_does_not_hide_a_wait_for_the_server(run):
     run(CountsAhead)
     with pytest.raises(CheckFailed, match='while there is no server, saw it stand still'):
         check_never_blocks()
+
+
+class HasNoTimer(IKClient):
+    def say_alive(self):
+        pass
+
+
+class CountsTargets(HasNoTimer):
+    def ask(self, target):
+        super().ask(target)
+        self.counter.publish(Int64())
+
+
+@pytest.mark.parametrize('node_class', [HasNoTimer, CountsTargets])
+def test_a_client_whose_counter_does_not_run_is_not_said_to_wait(run, node_class):
+    run(node_class)
+    with pytest.raises(CheckFailed) as failure:
+        check_never_blocks()
+    assert str(failure.value) == (
+        'expected the count on /ik_client/alive to go on while the server takes its time, saw it '
+        'stand still: the node waits for nothing, and still no timer publishes on '
+        '/ik_client/alive: leave that one as it was given, with its period of 0.1 s'
+    )
+
+
+class OnlyAsks(HasNoTimer):
+    def answer(self, response):
+        pass
+
+
+class OnlyListens(HasNoTimer):
+    def ask(self, target):
+        pass
+
+
+@pytest.mark.parametrize(
+    ('node_class', 'hint'),
+    [
+        (OnlyAsks, 'publish when the answer is there, however late it comes'),
+        (OnlyListens, r'call self\.client\.call_async\(request\) for each message'),
+    ],
+)
+@pytest.mark.usefixtures('impatient')
+def test_a_missing_answer_of_a_client_without_counter_has_its_own_reason(run, node_class, hint):
+    run(node_class)
+    with pytest.raises(CheckFailed, match=f'saw none in 1.5 s: {hint}'):
+        check_asks()
 
 
 class DropsMeanwhile(IKClient):

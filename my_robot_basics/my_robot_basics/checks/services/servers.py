@@ -181,9 +181,7 @@ class Server(HoldingServer):
 
         `meanwhile`: what happens, as a clause. Raises CheckFailed, Starved.
         """
-        self._client().expect_counts(
-            self._beats, meanwhile, send, has_asked=self.holds_any, hint=hint
-        )
+        self._client().expect_counts(meanwhile, send, has_asked=self.holds_any, hint=hint)
         self.expect_alone()
 
     def expect_alone(self) -> None:
@@ -192,7 +190,7 @@ class Server(HoldingServer):
 
     def _client(self) -> WaitingClient:
         goes_on = partial(self._goes_on, lambda: self.publish(self.published[-1]))
-        seen = self._watcher, self.name, self.type, self._raised
+        seen = self._watcher, self.name, self.type, self._raised, self._beats
         return WaitingClient(*seen, goes_on, has_lost=self.starts > 1)
 
     def _goes_on(self, send: Callable[[], None] = lambda: None) -> bool:

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from my_robot_basics.checks.recordings.callbacks import CallbackErrors
 from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.services.services import answers_parameters
 from my_robot_basics.checks.topics.heartbeat import Heartbeat
+from my_robot_basics.exchange import node_troubles
 from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import student_text
@@ -17,6 +19,9 @@ WAITS_FOR_LOST = (
     'a request that is sent while there is no server never gets an answer, so let no later target '
     'wait for it: call call_async only if service_is_ready() returns True'
 )
+
+COUNTS_SEC = 0.5
+"""How long a node that runs may take until it counts, in seconds of free time."""
 
 _SLEEP = re.compile(r'\bsleep\w*\(')
 
@@ -54,6 +59,14 @@ def waits_for_server(name: str) -> str:
     )
 
 
+def counts_nothing(topic_name: str) -> str:
+    """The advice for a node that runs, and does not count."""
+    return (
+        f'the node waits for nothing, and still no timer publishes on {topic_name}: leave that '
+        'one as it was given, with its period of 0.1 s'
+    )
+
+
 @dataclass(frozen=True)
 class WaitingClient:
     """A client that does not do what it should, and the likely reason."""
@@ -63,6 +76,8 @@ class WaitingClient:
     """The service's name."""
     type_: type
     raised: CallbackErrors
+    beats: Recorder
+    """The topic on which the node counts."""
     goes_on: Callable[[], bool]
     """Returns whether the node goes on running, even after one more message."""
     has_lost: bool = False
@@ -83,7 +98,7 @@ class WaitingClient:
         if type_name(self.type_) not in types:
             asks_for = student_text(' and '.join(sorted(types)))
             return f'it asks for {asks_for}, so compare the type in create_client(…)'
-        if not self.goes_on():
+        if self._is_blocked():
             return waits_for_server(self.name)
         if was_away:
             return WAITS_FOR_LOST
@@ -94,7 +109,7 @@ class WaitingClient:
         raised = self.raised.hint_or_thread()
         if raised and not _is_of_no_answer(raised):
             return raised
-        if not self.goes_on():
+        if self._is_blocked():
             return waits_for_answer(self.name)
         if self.has_lost and not raised:
             return WAITS_FOR_LOST
@@ -106,7 +121,6 @@ class WaitingClient:
 
     def expect_counts(
         self,
-        beats: Recorder,
         meanwhile: str,
         send: Callable[[], None],
         *,
@@ -119,13 +133,13 @@ class WaitingClient:
         what to try if the node does not sleep, by default by what it waits for. Raises CheckFailed
         if the count stands still, or Starved if the machine may be the cause.
         """
-        heart = Heartbeat(self.watcher, beats)
+        heart = Heartbeat(self.watcher, self.beats)
         if not heart.goes_on(send):
             fail(
-                expected=f'the count on {beats.topic_name} to go on while {meanwhile}',
+                expected=f'the count on {self.beats.topic_name} to go on while {meanwhile}',
                 seen='it stand still',
                 hint=self._why_still(heart.blocking_line, hint, has_asked=has_asked()),
-                cause=f'the count on {beats.topic_name} stands still',
+                cause=f'the count on {self.beats.topic_name} stands still',
                 doubt=heart.doubt,
             )
 
@@ -135,8 +149,25 @@ class WaitingClient:
             return raised
         if call := sleeping_call(line):
             return sleeps(student_text(call))
+        if self._counts_nothing():
+            return counts_nothing(self.beats.topic_name)
         waits = waits_for_answer if has_asked else waits_for_server
         return hint or waits(self.name)
+
+    def _is_blocked(self) -> bool:
+        return not (self.goes_on() or self._counts_nothing())
+
+    def _counts_nothing(self) -> bool:
+        """Whether the node answers other requests, and does not count even then."""
+        names = self.beats.publishers()
+        if any(map(node_troubles.blocking_line, names)):  # other groups may still answer
+            return False
+        if not all(answers_parameters(self.watcher, each) for each in names):
+            return False
+        before = len(self.beats.received)
+        return not self.watcher.spin_until_free(
+            lambda: len(self.beats.received) > before, free_sec=COUNTS_SEC
+        )
 
 
 def _is_of_no_answer(raised: str) -> bool:
