@@ -136,6 +136,10 @@ WRONG = {
     'one default for two': (turns('[100.0, 50.0]', '100.0'), 'a list of as many values'),
     'three defaults for two': (turns('50.0]', '50.0, 1.0]'), 'a list of as many values'),
     'braces': (turns('[100.0, 50.0]', '{100.0, 50.0}'), 'a list of as many values'),
+    'a default of a message': (
+        count('Duration duration', 'Duration duration 5.0'),
+        "a message has no default value: leave out '5.0', or write # before it",
+    ),
     'as in C': (turns('int32[2] turns', 'int32 turns[2]'), 'brackets belong to the type'),
     'as in C, at most': (
         count('int32[<=60] each_second', 'int32 each_second[<=60]'),

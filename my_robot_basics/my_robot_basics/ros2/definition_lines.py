@@ -109,6 +109,9 @@ def _why(type_name: str, rest: str, error: Exception) -> str:
     said = shorten(error, 120)
     if default and 'array ' in said:
         return 'the default value of an array is a list of as many values, like [1, 2]'
+    if default and 'parsing ' in said:
+        words = shorten(default.strip(), 40)
+        return f'a message has no default value: leave out {words!r}, or write # before it'
     return f'rosidl says: {said}'
 
 
