@@ -102,7 +102,7 @@ WRONG = {
     'SaysCancelled': 'write the words as the task does',
     'Volatile': 'durability TRANSIENT_LOCAL',
     'EndsAfterTheReport': 'it ended|until Ctrl-C',
-    'AnotherTopic': 'publish it when the last target is done',
+    'AnotherTopic': '/arm_player uses /done, so compare the spelling',
 }
 
 

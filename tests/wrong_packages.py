@@ -311,7 +311,7 @@ WRONG = (
         'other_topic',
         swap(PLAYER, ("'/arm_player/done'", "'/arm_player/finished'")),
         (1, 2, 0),
-        {'arm_player_plays': 'the report'},
+        {'arm_player_plays': 'uses /arm_player/finished, so compare the spelling'},
     ),
     Change(
         'asks_nobody',

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from my_robot_basics.checks.actions.goal_senders import WAITS
+from my_robot_basics.checks.packages import player_report
 from my_robot_basics.checks.packages.player_servers import (
     MOVE_ARM,
     SOLVE_IK,
@@ -14,7 +15,7 @@ from my_robot_basics.checks.services.services import answers_parameters
 from my_robot_basics.checks.services.waiting_clients import waits_for_answer
 from my_robot_basics.checks.values import joints
 from my_robot_basics.checks.values.solutions import request, solve
-from my_robot_basics.graph import actions, services
+from my_robot_basics.graph import actions, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
 NODE = '/arm_player'
@@ -79,8 +80,12 @@ def why_no_goal(watcher: Watcher) -> str:
 
 def why_no_report(watcher: Watcher) -> str:
     """Why no report comes at the end."""
-    is_free = answers_parameters(watcher, NODE)
-    return 'publish it when the last target is done' if is_free else WAITS
+    if not answers_parameters(watcher, NODE):
+        return WAITS
+    ends = graphs.take_snapshot(watcher)
+    if not ends.publishers(player_report.TOPIC):
+        return ends.why_no_message(player_report.TOPIC)
+    return 'publish it when the last target is done'
 
 
 def why_other_goal(servers: PlayerServers, number: int, seen: Sequence[float]) -> str:
