@@ -50,7 +50,8 @@ OF_CALLS = (
     ),
     Case(
         pattern="'Publisher' object is not callable",
-        to_do=', so send the message with the method publish of the publisher',
+        to_do=', so send the message with the method publish of the publisher; if one of your '
+        'methods has its name, rename one of the two',
     ),
     Case(
         pattern=r'(?:JointState|Header|Point|Time)\.__init__\(\) takes 1',
