@@ -8,7 +8,6 @@ from my_robot_basics.checks.recordings.callbacks import CallbackErrors
 from my_robot_basics.checks.recordings.recorder import Recorder
 from my_robot_basics.checks.services.services import answers_parameters
 from my_robot_basics.checks.topics.heartbeat import Heartbeat
-from my_robot_basics.exchange import node_troubles
 from my_robot_basics.exchange.values import type_name
 from my_robot_basics.feedback.errors import fail
 from my_robot_basics.feedback.hidden import student_text
@@ -19,9 +18,6 @@ WAITS_FOR_LOST = (
     'a request that is sent while there is no server never gets an answer, so let no later target '
     'wait for it: call call_async only if service_is_ready() returns True'
 )
-
-COUNTS_SEC = 0.5
-"""How long a node that runs may take until it counts, in seconds of free time."""
 
 _SLEEP = re.compile(r'\bsleep\w*\(')
 
@@ -158,15 +154,10 @@ class WaitingClient:
         return not (self.goes_on() or self._counts_nothing())
 
     def _counts_nothing(self) -> bool:
-        """Whether the node answers other requests, and does not count even then."""
-        names = self.beats.publishers()
-        if any(map(node_troubles.blocking_line, names)):  # other groups may still answer
-            return False
-        if not all(answers_parameters(self.watcher, each) for each in names):
-            return False
-        before = len(self.beats.received)
-        return not self.watcher.spin_until_free(
-            lambda: len(self.beats.received) > before, free_sec=COUNTS_SEC
+        """Whether the node answers other requests, and has not counted since the check began."""
+        # a node that waits may have another group, which answers: but it has counted before
+        return not self.beats.received and all(
+            answers_parameters(self.watcher, name) for name in self.beats.publishers()
         )
 
 
