@@ -239,3 +239,15 @@ def test_losing_a_target_while_the_server_is_slow_fails_with_advice(run, node_cl
     run(node_class)
     with pytest.raises(CheckFailed, match=message):
         check_never_blocks()
+
+
+class AsksForAnotherPoint(IKClient):
+    def ask(self, target):
+        super().ask(Point(x=abs(target.x), y=target.y))
+
+
+@pytest.mark.usefixtures('impatient')
+def test_asking_for_another_point_fails_with_advice_about_the_request(run):
+    run(AsksForAnotherPoint)
+    with pytest.raises(CheckFailed, match=r'put the point that arrived into request\.target'):
+        check_never_blocks()

@@ -16,6 +16,7 @@ EACH_TARGET = (
     'ask for each target, also for one that comes while the answer to another is not there yet'
 )
 AS_IT_IS = 'publish the angles of response.elbow_up as they are: they are in radians'
+AS_ARRIVED = 'put the point that arrived into request.target, as is'
 EACH_ANSWER = (
     'publish for each answer, though two requests are under way at once: add_done_callback for '
     'each future, or a list that keeps all of them'
@@ -47,6 +48,8 @@ def _expect_pose(
         if any(is_elbow_up(message, server.answer(request(*other))) for other in beside):
             was_asked = any(is_for(asked, x, y) for asked in server.requests)
             return EACH_ANSWER if was_asked else EACH_TARGET
+        if any(is_elbow_up(message, server.answer(asked)) for asked in _other_requests(server)):
+            return AS_ARRIVED
         # it is unknown for which target the message is
         reasons = [_why_wrong(server, message, request(*each)) for each in [(x, y), *beside]]
         return next((each for each in reasons if each != AS_IT_IS), AS_IT_IS)
@@ -70,6 +73,12 @@ def _why_wrong(server: Server, message: Any, asked: SolveIK.Request) -> str:
     why = joints.why_wrong(message, _degrees(response.elbow_up))
     # the response is in radians: a client converts nothing
     return AS_IT_IS if joints.tells_to_convert(why) else why
+
+
+def _other_requests(server: Server) -> list[Any]:
+    """The requests for no target that was published."""
+    targets = [(each.x, each.y) for each in server.published]
+    return [asked for asked in server.requests if not any(is_for(asked, *at) for at in targets)]
 
 
 def expect_no_others(server: Server) -> None:

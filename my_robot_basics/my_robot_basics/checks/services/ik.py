@@ -9,6 +9,7 @@ from typing import Any
 from geometry_msgs.msg import Point
 
 from my_robot_basics.checks.services.elbow_up import (
+    AS_ARRIVED,
     expect_each_elbow_up,
     expect_elbow_up,
     expect_no_others,
@@ -171,7 +172,7 @@ def ask(server: Server, x: float, y: float) -> None:
     server.ask(
         Point(x=x, y=y),
         is_it=lambda asked: is_for(asked, x, y),
-        hint='put the point that arrived into request.target, as is',
+        hint=AS_ARRIVED,
     )
 
 
