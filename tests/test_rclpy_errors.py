@@ -12,6 +12,7 @@ from my_robot_basics.feedback import hidden
 from my_robot_basics.feedback.error_words import DECIMAL_COMMA
 from my_robot_basics.feedback.python_errors import hint_for_exception, with_hint
 from my_robot_basics.graph import stop_reasons
+from my_robot_basics.graph.watcher import Watcher
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
@@ -256,3 +257,18 @@ def test_marks_around_the_text_of_an_exception_do_not_hide_what_it_is(monkeypatc
 def test_a_wrong_response_is_explained_in_the_words_of_python_3_12_too(name):
     said = f"AttributeError: type object '{name}' has no attribute 'ACCEPTED'"
     assert with_hint(said) == said + ACCEPT
+
+
+@pytest.mark.starts
+@pytest.mark.parametrize(
+    'code',
+    [
+        "node.create_subscription(Int32, '/solve_ik', print, 10)",
+        "node.create_publisher(Int32, '/solve_ik', 10)",
+    ],
+)
+def test_a_second_type_of_a_topic_leads_to_advice_about_its_other_ends(code):
+    with Watcher() as here:
+        here.node.create_publisher(String, '/solve_ik', 10)
+        error = error_of(code, node=here.node, Int32=Int32)
+    assert hint_of(error).startswith(', so see which type the other ends of this name have')

@@ -49,6 +49,13 @@ OF_CALLS = (
         to_do=', so write a parameter for each of them behind lambda, such as lambda future: …',
     ),
     Case(
+        # that is all that rclpy says if the program has the topic with another type
+        pattern='Failed to create subscription: invalid allocator'
+        '|called for existing (?:request )?topic name',
+        to_do=', so see which type the other ends of this name have: here it has another one '
+        'already',
+    ),
+    Case(
         pattern="'Publisher' object is not callable",
         to_do=', so send the message with the method publish of the publisher; if one of your '
         'methods has its name, rename one of the two',
