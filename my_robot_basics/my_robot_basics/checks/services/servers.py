@@ -74,8 +74,6 @@ class Server(HoldingServer):
         self._raised = CallbackErrors({*answers.publishers(), *beats.publishers()})
         self.made = MadeMessages(watcher, answers, self.sent)
         """The messages on `to`, matched with the responses."""
-        self.published: list[Any] = []
-        """All messages on `asked_on`; each should lead to a request."""
         self._publisher: Publisher | None = None
         self._seen = self._known_starts = 0
 

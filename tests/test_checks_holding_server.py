@@ -1,0 +1,49 @@
+"""How many requests of a client are too many while a check's server holds its responses back."""
+
+from types import SimpleNamespace
+
+import pytest
+from my_robot_basics.checks import CheckFailed
+from my_robot_basics.checks.services import holding_server
+from my_robot_basics.checks.services.holding_server import MOST_HELD, HoldingServer
+
+
+@pytest.fixture
+def answered(monkeypatch):
+    """A function: hold for so many seconds, and return the requests that are answered then."""
+
+    def release(*requests, held_sec, reverse=False):
+        now, sent = [100.0], []
+        monkeypatch.setattr(holding_server, 'time', SimpleNamespace(monotonic=lambda: now[0]))
+        service = SimpleNamespace(send_response=lambda response, _: sent.append(response))
+        node = SimpleNamespace(create_service=lambda *_: service)
+        server = HoldingServer(node, name='/solve_ik', type_=object, answer=lambda asked: asked)
+        server.start()
+        server.hold()
+        server.published += sorted({*requests})
+        for each in requests:
+            service.send_response(server._take(each, None), None)
+        assert not sent
+        now[0] += held_sec
+        server.release(reverse=reverse)
+        return sent
+
+    return release
+
+
+def test_a_client_that_repeats_two_requests_each_second_gets_both_answers(answered):
+    asked = ['a', 'b'] * 8
+    sent = answered(*asked, held_sec=8.0)
+    assert sent == asked[-MOST_HELD:]
+
+
+@pytest.mark.parametrize('held_sec', [1.5, 4.0])
+def test_a_client_that_asks_in_a_loop_is_reported(answered, held_sec):
+    asked = ['a'] * (MOST_HELD + 1) + ['b'] * (MOST_HELD + 1)
+    with pytest.raises(CheckFailed, match='ask once in the callback, not in a loop or a timer'):
+        answered(*asked, held_sec=held_sec)
+
+
+def test_a_few_responses_are_all_sent_in_the_order_that_was_asked_for(answered):
+    assert answered('a', 'b', 'c', held_sec=1.0) == ['a', 'b', 'c']
+    assert answered('a', 'b', 'c', held_sec=1.0, reverse=True) == ['c', 'b', 'a']
