@@ -22,6 +22,8 @@ GAP_NS = SEC // 100
 class Node:
     """Republishes each message at once, except the first of each pair that `loses` selects."""
 
+    publishers = tuple
+
     def __init__(self, loses, apart_ns=GAP_NS):
         self.loses, self.received, self.numbers = loses, [], count()
         self.apart_ns = apart_ns
@@ -117,6 +119,8 @@ def test_repeated_messages_from_a_queue_do_not_count_as_invented(monkeypatch, is
 
 class SlowNode:
     """Has a queue of depth 1; `takes_sec` says how long each call of its callback takes."""
+
+    publishers = tuple
 
     def __init__(self, takes_sec):
         self.takes_sec, self.numbers = takes_sec, count()

@@ -186,17 +186,18 @@ class LeavesOutTheFirstHundred(monitor.JointStateMonitor):
 @pytest.mark.timeout(120)
 def test_a_relay_that_drops_its_first_hundred_messages_fails(run, monkeypatch):
     turns = range(1, 201)  # of a machine that is busy all the time
-    monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(turns))
+    monkeypatch.setattr(relays, 'awake_turns', lambda free_sec, names: iter(turns))
     run(LeavesOutTheFirstHundred)
     with pytest.raises(CheckFailed, match='to be republished on /monitor/joint_states, unchanged'):
         check_delivery()
 
 
 def test_a_first_message_that_is_not_republished_is_resent_and_later_less_often(monkeypatch):
-    monkeypatch.setattr(relays, 'free_turns', lambda free_sec: iter(range(1, 201)))
+    monkeypatch.setattr(relays, 'awake_turns', lambda free_sec, names: iter(range(1, 201)))
     monkeypatch.setattr(relays.RelayEndpoints, 'why_lost', lambda *_, **__: 'look')
     watcher = SimpleNamespace(spin_until=lambda done, timeout_sec: done())
-    recorder, raised = SimpleNamespace(messages=list), SimpleNamespace(hint=str)
+    recorder = SimpleNamespace(messages=list, publishers=tuple)
+    raised = SimpleNamespace(hint=str)
     sent = []
     with pytest.raises(CheckFailed, match='saw none in 4 s: look'):
         joint_states._expect_out(

@@ -5,6 +5,7 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.recordings.sleeping_callbacks import or_sleeps
 from my_robot_basics.checks.relays.invented import has_invented
 from my_robot_basics.checks.relays.pairs import GAP_SEC, Pairs
 from my_robot_basics.checks.relays.pushed_out import MOST_AGAIN, PushedOut
@@ -167,7 +168,8 @@ class Passage:
             self._take()
             return not any(each is sent for each in self._waiting)
 
-        self._watcher.spin_until_free(lambda: is_out() or unless(), free_sec=free_sec)
+        is_over = or_sleeps(lambda: is_out() or unless(), free_sec, self._recorder.publishers)
+        self._watcher.spin_until_free(is_over, free_sec=free_sec)
         return is_out()
 
     def _let_in(self, sent: VariedMessage) -> None:

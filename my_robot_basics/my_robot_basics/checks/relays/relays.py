@@ -9,6 +9,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from my_robot_basics.checks.recordings.callbacks import CallbackErrors
 from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.recordings.sleeping_callbacks import awake_turns
 from my_robot_basics.checks.relays.passage import QUIET_SEC, Passage
 from my_robot_basics.checks.relays.relay_endpoints import TIMEOUT_SEC, RelayEndpoints
 from my_robot_basics.checks.relays.relay_faults import RelayFaults, what_differs
@@ -18,7 +19,6 @@ from my_robot_basics.checks.values.content import content
 from my_robot_basics.feedback.errors import CheckFailed, fail
 from my_robot_basics.graph import earlier_waits
 from my_robot_basics.graph.watcher import Watcher
-from my_robot_basics.session.pressure import free_turns
 
 EVERYTHING = QoSProfile(depth=5000, reliability=ReliabilityPolicy.BEST_EFFORT)
 """The QoS for a subscription to all messages on the source."""
@@ -171,7 +171,7 @@ class Relay:
     ) -> None:
         """Wait for the message on `to`, after `before` others; send it `again` meanwhile."""
         what, topic_name = self._part(message), self.to
-        for times in free_turns(LOST_SEC):
+        for times in awake_turns(LOST_SEC, recorder.publishers):
             if again is not None and (times <= OFTEN or times % SELDOM == 0):
                 again.publish(message)
             if watcher.spin_until(

@@ -1,6 +1,6 @@
 """A check's client of a service: it calls the server, and explains why no response comes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -9,11 +9,13 @@ from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 from my_robot_basics.checks.recordings.callbacks import CallbackErrors
+from my_robot_basics.checks.recordings.sleeping_callbacks import or_sleeps
 from my_robot_basics.checks.services.awaited_servers import (
     SERVER_SEC,
     expect_type,
     wait_for_server,
 )
+from my_robot_basics.checks.services.late_answers import WAITED_SEC
 from my_robot_basics.exchange import node_troubles
 from my_robot_basics.feedback.errors import expect, fail
 from my_robot_basics.feedback.hidden import student_text
@@ -68,7 +70,9 @@ class Service:
             client = watcher.node.create_client(self.type, self.name, qos_profile=RESPONSES)
             watcher.spin_until(client.service_is_ready, timeout_sec=SERVER_SEC)
             asked = [client.call_async(request) for request in requests]
-            if not wait_for_all(watcher, asked, gives_up=lambda: bool(raised.hint())):
+            if not wait_for_all(
+                watcher, asked, gives_up=lambda: bool(raised.hint()), names=[server]
+            ):
                 self._fail_unanswered(watcher, server, raised, asked, what)
             raised.expect_none()
             return [future.result() for future in asked]
@@ -154,18 +158,26 @@ class Service:
 
 
 def wait_for_all(
-    watcher: Watcher, asked: Sequence[Future], *, gives_up: Callable[[], bool]
+    watcher: Watcher,
+    asked: Sequence[Future],
+    *,
+    gives_up: Callable[[], bool],
+    names: Collection[str] = (),
 ) -> bool:
     """Spin until all are answered, at most ANSWER_SEC of free time; return whether they are.
 
-    `gives_up()` returns whether no response can come any more.
+    `gives_up()` returns whether no response can come any more. If a callback of the nodes `names`
+    sleeps, WAITED_SEC of wall time is the limit.
     """
+
+    def are_done() -> bool:
+        return all(future.done() for future in asked)
+
+    is_over = or_sleeps(are_done, WAITED_SEC, lambda: names)
     for _ in range(round(ANSWER_SEC / LOOK_SEC)):
-        if watcher.spin_until_free(lambda: all(f.done() for f in asked), free_sec=LOOK_SEC):
-            return True
-        if gives_up():
+        if watcher.spin_until_free(is_over, free_sec=LOOK_SEC) or gives_up():
             break
-    return all(future.done() for future in asked)
+    return are_done()
 
 
 def answers_parameters(
