@@ -4,6 +4,8 @@ from itertools import count
 from types import SimpleNamespace
 
 import pytest
+from my_robot_basics.checks.nodes.logs import ANSWER_SEC
+from my_robot_basics.checks.nodes.sleepers import PatientWait
 from my_robot_basics.checks.recordings import sleeping_callbacks
 from my_robot_basics.checks.recordings.sleeping_callbacks import awake_turns
 from my_robot_basics.checks.relays.passage import Passage
@@ -40,9 +42,12 @@ class Machine:
         return ('/relay',)
 
     def sleeps_on(self, name, seconds):
-        self.spin_until(lambda: False, timeout_sec=0.01)
-        is_asleep = self.sleeps and self.queue and self.done_at > self.now + seconds
-        return (9, f'time.sleep({self.takes_sec})') if is_asleep else (0, '')
+        self.handle()
+        if not (self.sleeps and self.queue):
+            return 0, ''
+        woken = self.done_at
+        self.now = min(woken, self.now + seconds)
+        return (9, 'time.sleep(…)') if self.now < woken else (0, '')
 
     def spin_until(self, done, *, timeout_sec):
         end = self.now + timeout_sec
@@ -133,3 +138,15 @@ def test_a_sleep_for_each_of_seven_values_has_the_same_limit(
     asked = SimpleNamespace(done=lambda: len(node.received) == 7)
     answered = wait_for_all(node, [asked], gives_up=lambda: False, names=['/relay'])
     assert answered == is_in_time
+
+
+@FREE_PARTS
+@pytest.mark.parametrize(('takes_sec', 'is_in_time'), [(2.0, True), (3.0, False), (5.0, False)])
+def test_an_answer_in_the_log_has_the_same_limit_after_a_sleep(
+    machine, takes_sec, is_in_time, free_part
+):
+    """A sleep of 3 s was in time if any process had to wait for a processor meanwhile."""
+    node = machine(takes_sec, free_part=free_part)
+    node.publish('target')
+    wait = PatientWait(node, '/ik_solver_node')
+    assert wait.until(lambda: bool(node.received), free_sec=ANSWER_SEC) == is_in_time
