@@ -13,9 +13,11 @@ from my_robot_basics.feedback.errors import expect
 MOST_REQUESTS, MOST_HELD = 500, 10
 """How many requests are too many, and how many responses are sent at once: a client's queue has no
 room for more."""
-REPEATS_HZ = 1.2
+REPEATS_HZ = 5.0
 """How often a client may ask again for each message, in addition to MOST_HELD requests: a busy
-machine makes the time long for which responses are held back."""
+machine makes the time long for which responses are held back. So it is a rate: what an idle
+machine allows in 1.5 s, which MOST_HELD adds to, must not be too much in 10 s. A loop at 10 Hz has
+too many in any time."""
 
 
 class HoldingServer:
