@@ -5,6 +5,7 @@ import random
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,6 +13,7 @@ import pytest
 from my_robot_basics.checks import CheckFailed, player
 from my_robot_basics.checks.packages import drawing, player_meeting, player_report
 from my_robot_basics.feedback.errors import Starved, fail
+from my_robot_basics.session import pressure
 
 PLAYERS = Path(__file__).parent / 'nodes/players.py'
 VISIBLE = (
@@ -69,6 +71,12 @@ def play(monkeypatch):
         player.expect_plays(*targets, **options)
 
     return play
+
+
+def pretend(monkeypatch, *, busy_part):
+    """Let processes wait for a processor for that part of the time, as Linux reports it."""
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: busy_part * time.monotonic())
+    monkeypatch.setattr(pressure, 'idle_sec', time.monotonic)
 
 
 RIGHT = (
@@ -148,6 +156,28 @@ def test_a_program_that_does_not_wait_for_the_solver_fails(play):
 def test_a_program_that_gives_up_a_goal_after_a_second_fails(play, targets, words):
     with pytest.raises(CheckFailed, match=words):
         play('GivesUpAfterASecond', targets, first_goal_sec=3.0)
+
+
+@pytest.mark.parametrize(
+    ('variant', 'options'),
+    [
+        ('GivesUpAfterFiveSeconds', {'first_goal_sec': 3.0}),
+        ('WaitsFiveSecondsForTheSolver', {'arm_first': True}),
+        ('SleepsFiveSecondsAfterTheReport', {'stays_sec': player_report.STAYS_SEC}),
+    ],
+)
+def test_a_limit_of_five_seconds_in_a_program_is_not_exceeded_on_a_busy_machine(
+    play, monkeypatch, variant, options
+):
+    """It is not on an idle one, and a program measures the wall time."""
+    pretend(monkeypatch, busy_part=0.8)
+    play(variant, VISIBLE[:1], **options)
+
+
+def test_a_program_that_waits_a_second_for_the_arm_fails_on_an_idle_machine(play, monkeypatch):
+    pretend(monkeypatch, busy_part=0.0)
+    with pytest.raises(CheckFailed, match='no request to /solve_ik while there is no /move_arm'):
+        play('WaitsASecondForTheArm', VISIBLE)
 
 
 def test_a_program_that_waits_for_the_result_of_a_rejected_goal_fails(play):

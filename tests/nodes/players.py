@@ -292,6 +292,26 @@ class GivesUpAfterASecond(Program):
         return ENDS[result.result().status] if result.done() else 'aborted'
 
 
+class GivesUpAfterFiveSeconds(Program):
+    def visit(self, x, y):
+        handle = self.wait_for(self.arm.send_goal_async(self.goal(self.wait_for(self.ask(x, y)))))
+        result = handle.get_result_async()
+        rclpy.spin_until_future_complete(self, result, timeout_sec=5.0)
+        return ENDS[result.result().status] if result.done() else 'aborted'
+
+
+class WaitsASecondForTheArm(NeverWaitsForTheArm):
+    def visit(self, x, y):
+        self.arm.wait_for_server(timeout_sec=1.0)
+        return super().visit(x, y)
+
+
+class WaitsFiveSecondsForTheSolver(NeverWaitsForTheSolver):
+    def visit(self, x, y):
+        self.solver.wait_for_service(timeout_sec=5.0)
+        return super().visit(x, y)
+
+
 class ElbowDown(Program):
     def visit(self, x, y):
         answer = self.wait_for(self.ask(x, y))
@@ -354,6 +374,13 @@ class SleepsAfterTheReport(Program):
     def main(cls):
         cls().play()
         time.sleep(1.5)
+
+
+class SleepsFiveSecondsAfterTheReport(Program):
+    @classmethod
+    def main(cls):
+        cls().play()
+        time.sleep(5.0)
 
 
 class AnotherTopic(Program):

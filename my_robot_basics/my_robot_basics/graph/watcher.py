@@ -153,15 +153,18 @@ class Watcher:
         """Spin for `seconds` of monotonic time."""
         self.spin_until(lambda: False, timeout_sec=seconds)
 
-    def spin_until_free(self, done: Callable[[], bool], *, free_sec: float) -> bool:
+    def spin_until_free(
+        self, done: Callable[[], bool], *, free_sec: float, wall_sec: float | None = None
+    ) -> bool:
         """Spin until `done()`, at most `free_sec` of free time; return whether it is done.
 
-        Free time is time in which no process had to wait for a processor.
+        Free time is time in which no process had to wait for a processor. `wall_sec`: the most
+        wall time, if a node must not wait too long for the check, by its own timeouts.
         """
         # most waits end immediately: then Linux need not be asked how busy the machine is
         if self.spin_until(done, timeout_sec=min(LOOK_EVERY_SEC, free_sec)):
             return True
-        turns = free_turns(free_sec)
+        turns = free_turns(free_sec, wall_sec)
         return any(self.spin_until(done, timeout_sec=LOOK_EVERY_SEC) for _ in turns)
 
     def _expect_few_endpoints(self) -> None:

@@ -62,10 +62,14 @@ class Stopwatch:
         return self.free_sec() < 0.5 * self.wall_sec()
 
 
-def free_turns(free_sec: float) -> Iterator[int]:
-    """Yield 1, 2, … until `free_sec` have passed in which no process waited for a processor."""
+def free_turns(free_sec: float, wall_sec: float | None = None) -> Iterator[int]:
+    """Yield 1, 2, … until `free_sec` have passed in which no process waited for a processor.
+
+    On a busy machine, it ends after `wall_sec`, by default BUSY_TIMES as much.
+    """
+    most_sec = BUSY_TIMES * free_sec if wall_sec is None else wall_sec
     watch = Stopwatch()
     for turn in itertools.count(1):
         yield turn
-        if watch.free_sec() >= free_sec or watch.wall_sec() >= BUSY_TIMES * free_sec:
+        if watch.free_sec() >= free_sec or watch.wall_sec() >= most_sec:
             return

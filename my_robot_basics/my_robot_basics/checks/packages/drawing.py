@@ -19,13 +19,11 @@ from my_robot_basics.checks.packages.player_servers import (
 from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.graph.watcher import Watcher
 
-SPEED = 0.5
-"""The speed that each goal has to request, in rad/s."""
-SPEED_NEAR = 1e-6
-REPLY_SEC = 4.0
-"""How long to wait for a request or a goal, in seconds of free time."""
-QUIET_SEC = 0.2
-"""How long to wait for what must not come, such as a second report, in seconds of free time."""
+SPEED, SPEED_NEAR = 0.5, 1e-6
+"""The speed that each goal has to request, and how exactly, in rad/s."""
+REPLY_SEC, QUIET_SEC, MORE_SEC = 4.0, 0.2, 0.8
+"""How long to wait for a request or a goal, and for what must not come, such as a second report:
+in s of free time. A goal takes at most MORE_SEC of wall time more: a node may give up after 5 s."""
 
 
 class Drawing:
@@ -63,7 +61,7 @@ class Drawing:
         self._meeting.wait_for_clients()
         if arm_first:
             self._servers.start_arm()
-            self._comes(lambda: False, free_sec=LATER_SEC)
+            self._watcher.spin_for(LATER_SEC)
         else:
             self._meeting.expect_not_asked_yet(self._servers.solver)
         self._servers.start()
@@ -80,8 +78,7 @@ class Drawing:
         goal = self._expect_goal(number)
         if word == 'rejected':
             return
-        goals, report = self._servers.goals, self._report
-        self._comes(lambda: len(goals) > self._goals or report.has_come(), free_sec=goal_sec)
+        self._comes(self._is_too_soon, free_sec=goal_sec, wall_sec=goal_sec + MORE_SEC)
         self._expect_one_at_a_time()
         self._report.expect_none_yet()
         if word == 'canceled':
@@ -167,6 +164,9 @@ class Drawing:
         )
         self._goals += 1
         return goal
+
+    def _is_too_soon(self) -> bool:
+        return len(self._servers.goals) > self._goals or self._report.has_come()
 
     def _expect_one_at_a_time(self) -> None:
         expect(

@@ -18,9 +18,9 @@ TOPIC = '/arm_player/done'
 TYPE = 'std_msgs/msg/String'
 LATE_SEC = 4.0
 """How long the report may take to reach a late-joining subscription, in s of free time."""
-STAYS_SEC = 2.5
-"""How long after its report a node has to run on, in s of free time: some sleep for a second or
-two, and then return from main."""
+STAYS_SEC, MOST_STAYS_SEC = 2.5, 3.5
+"""How long after its report a node has to run on, in s of free time, and in s of wall time at
+most. Some sleep for a second or two, and then return from main; 5 s are never noticed."""
 DEPTH = 100
 ANY = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -52,7 +52,7 @@ class PlayerReport:
         """Whether a report comes within `free_sec`; if so, returns STAYS_SEC later."""
         is_there = self._watcher.spin_until_free(self.is_there, free_sec=free_sec)
         if is_there:
-            self._watcher.spin_until_free(lambda: False, free_sec=STAYS_SEC)
+            self._let_stay(STAYS_SEC)
         return is_there
 
     def has_come(self) -> bool:
@@ -99,7 +99,7 @@ class PlayerReport:
 
     def expect_kept(self, process: RunningExecutable, *, stays_sec: float = 0.0) -> None:
         """A subscription that joins `stays_sec` later receives it, too. Raises CheckFailed."""
-        self._watcher.spin_until_free(lambda: False, free_sec=stays_sec)
+        self._let_stay(stays_sec)
         process.expect_running()
         why = self.why_none()
         expect(
@@ -121,6 +121,10 @@ class PlayerReport:
         if any(i.qos_profile.reliability != ReliabilityPolicy.RELIABLE for i in infos):
             return 'give the publisher the reliability RELIABLE: a lost report is not sent again'
         return ''
+
+    def _let_stay(self, free_sec: float) -> None:
+        most = {'free_sec': free_sec, 'wall_sec': MOST_STAYS_SEC}
+        self._watcher.spin_until_free(lambda: False, **most)
 
     def _is_published(self) -> bool:
         return bool(graphs.publisher_infos(self._watcher.node, TOPIC))
