@@ -23,7 +23,8 @@ from my_robot_basics.graph import earlier_waits, graphs, services
 from my_robot_basics.graph.watcher import Watcher
 
 ANSWER_SEC = 4.0
-"""How long to wait for a response, in s of free time."""
+"""How long to wait for a response, in s of free time, from the one before: a server that takes its
+time answers one request after the other."""
 LOOK_SEC = 0.5
 """How often to ask the notebook meanwhile whether a callback has raised."""
 PARAMETERS_SEC, LATE_SEC = 1.0, 0.5
@@ -164,19 +165,22 @@ def wait_for_all(
     gives_up: Callable[[], bool],
     names: Collection[str] = (),
 ) -> bool:
-    """Spin until all are answered, at most ANSWER_SEC of free time; return whether they are.
+    """Spin until all are answered, at most ANSWER_SEC of free time for each; return whether so.
 
     `gives_up()` returns whether no response can come any more. If a callback of the nodes `names`
-    sleeps, WAITED_SEC of wall time is the limit.
+    sleeps, WAITED_SEC of wall time is the limit for each.
     """
 
     def are_done() -> bool:
         return all(future.done() for future in asked)
 
-    is_over = or_sleeps(are_done, WAITED_SEC, lambda: names)
-    for _ in range(round(ANSWER_SEC / LOOK_SEC)):
+    answered, looks, is_over = 0, 0, or_sleeps(are_done, WAITED_SEC, lambda: names)
+    while looks < round(ANSWER_SEC / LOOK_SEC):
         if watcher.spin_until_free(is_over, free_sec=LOOK_SEC) or gives_up():
             break
+        before, answered, looks = answered, sum(future.done() for future in asked), looks + 1
+        if answered > before:
+            looks, is_over = 0, or_sleeps(are_done, WAITED_SEC, lambda: names)
     return are_done()
 
 
