@@ -1,12 +1,13 @@
 """The nodes of an action client: send them messages, ask whether they answer, sleep or raise."""
 
+from collections.abc import Callable
 from typing import Any
 
 from rclpy.publisher import Publisher
 
 from my_robot_basics.checks.recordings.callbacks import CallbackErrors
 from my_robot_basics.checks.recordings.recorder import Recorder
-from my_robot_basics.checks.services.services import answers_parameters
+from my_robot_basics.checks.services.services import LATE_SEC, answers_parameters
 from my_robot_basics.checks.services.waiting_clients import sleeping_call, sleeps
 from my_robot_basics.checks.topics.topics import Topic
 from my_robot_basics.exchange import node_troubles
@@ -49,6 +50,11 @@ class ClientNodes:
             if not answers_parameters(self._watcher, name, when_late=when_late)
         }
         return names - self.mute
+
+    def expect_soon(self, done: Callable[[], bool]) -> None:
+        """Spin until `done()`; if that takes LATE_SEC, `expect_awake`. Raises CheckFailed."""
+        if not self._watcher.spin_until(done, timeout_sec=LATE_SEC):
+            self.expect_awake()
 
     def expect_awake(self) -> None:
         """No callback sleeps, as the notebook reports within a second. Raises CheckFailed.

@@ -179,8 +179,8 @@ class ServedAction(ScriptedActionServer):
         self.asked.expect_no_others(self.goals)
 
     def _spin_until(self, done: Callable[[], bool], free_sec: float, *, may_sleep: bool) -> bool:
-        if not may_sleep and not self.watcher.spin_until(done, timeout_sec=QUIET_SEC):
-            self.client.expect_awake()
+        if not may_sleep:
+            self.client.expect_soon(done)
         return self.watcher.spin_until_free(done, free_sec=free_sec)
 
     def _is_lost(self, before: int) -> bool:

@@ -23,7 +23,7 @@ SPEED, SPEED_NEAR = 0.5, 1e-6
 """The speed that each goal has to request, and how exactly, in rad/s."""
 REPLY_SEC, QUIET_SEC, MORE_SEC = 4.0, 0.2, 0.8
 """How long to wait for a request or a goal, and for what must not come, such as a second report:
-in s of free time. A goal takes at most MORE_SEC of wall time more: a node may give up after 5 s."""
+in s of free time. A goal takes at most MORE_SEC of wall time more: a node may give up in 5 s."""
 
 
 class Drawing:

@@ -27,9 +27,10 @@ ANSWER_SEC = 4.0
 time answers one request after the other."""
 LOOK_SEC = 0.5
 """How often to ask the notebook meanwhile whether a callback has raised."""
-PARAMETERS_SEC, LATE_SEC = 1.0, 0.5
+PARAMETERS_SEC, LATE_SEC = 1.0, 0.25
 """How long a spinning node may take to answer for a parameter, in s of free time; after how long
-this is late, in s of wall time."""
+this is late, in s of wall time. The notebook then needs half a second to tell that a callback
+sleeps: a sleep of 1 s is always found, and one of 0.5 s never."""
 RESPONSES = QoSProfile(depth=1000)
 """The queue for responses is long: a wrong server's additional responses must not push any out."""
 
