@@ -6,8 +6,10 @@ import pytest
 from my_robot_basics.checks import CheckFailed
 from my_robot_basics.checks.actions import client_nodes
 from my_robot_basics.checks.actions.client_nodes import ClientNodes
-from my_robot_basics.checks.actions.served_action import ServedAction
+from my_robot_basics.checks.actions.served_action import REPLY_SEC
+from my_robot_basics.checks.services import late_answers
 from my_robot_basics.live.output.troubles import UNFINISHED_SEC
+from my_robot_basics.session import pressure
 
 LINE = 'line 21, in send: time.sleep(1.0)'
 
@@ -44,8 +46,7 @@ class Sleeper:
 
 
 def wait_for_goal(sleeper, client):
-    served = SimpleNamespace(watcher=sleeper, client=client)
-    assert ServedAction._spin_until(served, sleeper.is_done, 4.0, may_sleep=False)
+    assert client.comes_in_time(sleeper.is_done, REPLY_SEC, may_sleep=False)
 
 
 def wait_for_answer(sleeper, client):
@@ -80,3 +81,20 @@ def test_a_client_that_sleeps_for_a_second_or_two_is_found(wait, sleeps_sec, lat
 @pytest.mark.parametrize('sleeps_sec', [0.1, 0.5])
 def test_a_client_that_sleeps_for_half_a_second_is_not(wait, sleeps_sec, late_sec):
     wait(late_sec, sleeps_sec)
+
+
+@pytest.mark.parametrize('free_part', [1.0, 0.5, 0.2])
+@pytest.mark.parametrize(('sleeps_sec', 'is_in_time'), [(2.0, True), (5.0, False)])
+def test_a_sleep_that_is_allowed_has_the_same_limit_however_busy_the_machine_is(
+    monkeypatch, sleeps_sec, is_in_time, free_part
+):
+    sleeper = Sleeper(0.0, sleeps_sec)
+    clock = SimpleNamespace(monotonic=lambda: sleeper.now_sec)
+    monkeypatch.setattr(pressure, 'time', clock)
+    monkeypatch.setattr(late_answers, 'time', clock)
+    monkeypatch.setattr(pressure, 'stalled_sec', lambda: (1.0 - free_part) * sleeper.now_sec)
+    monkeypatch.setattr(pressure, 'idle_sec', lambda: sleeper.now_sec)
+    monkeypatch.setattr(client_nodes.node_troubles, 'blocking_line', sleeper.blocking_line)
+    outcomes = SimpleNamespace(publishers=lambda: ('/move_arm_client',))
+    client = ClientNodes(sleeper, outcomes)
+    assert client.comes_in_time(sleeper.is_done, REPLY_SEC, may_sleep=True) == is_in_time

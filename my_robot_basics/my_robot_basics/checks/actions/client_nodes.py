@@ -7,6 +7,7 @@ from rclpy.publisher import Publisher
 
 from my_robot_basics.checks.recordings.callbacks import CallbackErrors
 from my_robot_basics.checks.recordings.recorder import Recorder
+from my_robot_basics.checks.services import late_answers
 from my_robot_basics.checks.services.services import LATE_SEC, answers_parameters
 from my_robot_basics.checks.services.waiting_clients import sleeping_call, sleeps
 from my_robot_basics.checks.topics.topics import Topic
@@ -51,10 +52,15 @@ class ClientNodes:
         }
         return names - self.mute
 
-    def expect_soon(self, done: Callable[[], bool]) -> None:
-        """Spin until `done()`; if that takes LATE_SEC, `expect_awake`. Raises CheckFailed."""
-        if not self._watcher.spin_until(done, timeout_sec=LATE_SEC):
+    def comes_in_time(self, done: Callable[[], bool], free_sec: float, *, may_sleep: bool) -> bool:
+        """Spin until `done()`, as `late_answers.comes_in_time`; return whether it is done.
+
+        Raises CheckFailed if that takes LATE_SEC and a node sleeps, unless it `may_sleep`.
+        """
+        if not may_sleep and not self._watcher.spin_until(done, timeout_sec=LATE_SEC):
             self.expect_awake()
+        names = self._outcomes.publishers()
+        return late_answers.comes_in_time(self._watcher, done, free_sec=free_sec, names=names)
 
     def expect_awake(self) -> None:
         """No callback sleeps, as the notebook reports within a second. Raises CheckFailed.

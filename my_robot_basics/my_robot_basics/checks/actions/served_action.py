@@ -13,13 +13,12 @@ from my_robot_basics.feedback.errors import expect, fail, shorten
 from my_robot_basics.feedback.hidden import student_text
 from my_robot_basics.graph.watcher import Watcher
 
-REPLY_SEC = 4.0
-"""How long to wait for a goal, a request to cancel or an outcome, in s of free time."""
+REPLY_SEC, AGAIN_SEC = 4.0, 1.0
+"""How long to wait for a goal, a request to cancel or an outcome, in s of free time. A new client
+may lose a goal, so its message is published again after AGAIN_SEC."""
 QUIET_SEC, SOON_SEC, MORE_SEC = 0.5, 0.25, 0.05
 """How long to wait for what must not come, in s of wall time: normally; if the node has already
 processed everything; for a second message of a callback that has published one."""
-AGAIN_SEC = 1.0
-"""A new client may lose a goal, so its message is published again after AGAIN_SEC."""
 
 
 class ServedAction(ScriptedActionServer):
@@ -71,8 +70,11 @@ class ServedAction(ScriptedActionServer):
 
         self.publish(message)
         self._for_last = found
-        for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self._spin_until(lambda: bool(found()), AGAIN_SEC, may_sleep=self.may_sleep):
+        free_sec = AGAIN_SEC if self._known_starts < self.starts else REPLY_SEC
+        for _ in range(round(REPLY_SEC / free_sec)):
+            if self.client.comes_in_time(
+                lambda: bool(found()), free_sec, may_sleep=self.may_sleep
+            ):
                 self._known_starts, self._was_away = self.starts, False
                 self.let_client_know()
                 return found()[0]
@@ -98,7 +100,7 @@ class ServedAction(ScriptedActionServer):
         self.say_obstacle(is_there=True)
         is_late = bool(self.client.mute)  # for a reason that other checks tell
         for _ in range(round(REPLY_SEC / AGAIN_SEC)):
-            if self._spin_until(lambda: bool(goal.cancels), AGAIN_SEC, may_sleep=is_late):
+            if self.client.comes_in_time(lambda: bool(goal.cancels), AGAIN_SEC, may_sleep=is_late):
                 self._cancelled_sec = max(self._cancelled_sec, goal.cancelled_sec())
                 return
             # the message may have arrived before the client knew that its goal was accepted
@@ -123,7 +125,7 @@ class ServedAction(ScriptedActionServer):
         def new() -> list[str]:
             return [message.data for message in self._outcomes.messages()[self._before :]]
 
-        if self._spin_until(lambda: word in new(), REPLY_SEC, may_sleep=self.may_sleep):
+        if self.client.comes_in_time(lambda: word in new(), REPLY_SEC, may_sleep=self.may_sleep):
             self.client.raised.expect_none()
             self.watcher.spin_for(MORE_SEC)
             goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
@@ -178,16 +180,13 @@ class ServedAction(ScriptedActionServer):
         goal_senders.expect_one(self._for_last(), asked_on=self.asked_on)
         self.asked.expect_no_others(self.goals)
 
-    def _spin_until(self, done: Callable[[], bool], free_sec: float, *, may_sleep: bool) -> bool:
-        if not may_sleep:
-            self.client.expect_soon(done)
-        return self.watcher.spin_until_free(done, free_sec=free_sec)
-
     def _is_lost(self, before: int) -> bool:
         """Whether no goal comes beyond the first `before`, even if the client is late."""
         self.client.answering()
         late_sec = AGAIN_SEC if self.client.mute else 0.0
-        return not self._spin_until(lambda: len(self.goals) > before, late_sec, may_sleep=True)
+        return not self.watcher.spin_until_free(
+            lambda: len(self.goals) > before, free_sec=late_sec
+        )
 
     def _why_no_goal(self) -> str:
         how = {'asked': self.asked, 'was_away': self._was_away, **self._client_state()}
