@@ -117,7 +117,7 @@ class OpenAction:
 
     def answer_to(self, asked: Future, *, what: str) -> Any:
         """Wait for the response `asked`. Raises CheckFailed with the reason if none comes."""
-        if not wait_for_all(self.watcher, [asked], gives_up=lambda: bool(self.raised.hint())):
+        if not wait_for_all(self.watcher, [asked], gives_up=self.raised.hint):
             fail(
                 expected=f'an answer to {what}',
                 seen='none',

@@ -140,12 +140,7 @@ class NodeParameters:
             asked = None
             if client := self._meet(watcher, type_, service_name, greeting or type(request)()):
                 asked = client.call_async(request)
-                wait_for_all(
-                    watcher,
-                    [asked],
-                    gives_up=lambda: bool(errors.hint()),
-                    names=[self.node_name],
-                )
+                wait_for_all(watcher, [asked], gives_up=errors.hint, names=[self.node_name])
             if asked is None or not asked.done():
                 fail(
                     expected=f'{self.node_name} to answer {service_name}',

@@ -1,6 +1,6 @@
 """A check's client of a service: it calls the server, and explains why no response comes."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -25,6 +25,7 @@ from my_robot_basics.graph.watcher import Watcher
 ANSWER_SEC = 4.0
 """How long to wait for a response, in s of free time, from the one before: a server that takes its
 time answers one request after the other."""
+Why = Callable[[], str]
 LOOK_SEC = 0.5
 """How often to ask the notebook meanwhile whether a callback has raised."""
 PARAMETERS_SEC, LATE_SEC = 1.0, 0.25
@@ -72,9 +73,7 @@ class Service:
             client = watcher.node.create_client(self.type, self.name, qos_profile=RESPONSES)
             watcher.spin_until(client.service_is_ready, timeout_sec=SERVER_SEC)
             asked = [client.call_async(request) for request in requests]
-            if not wait_for_all(
-                watcher, asked, gives_up=lambda: bool(raised.hint()), names=[server]
-            ):
+            if not wait_for_all(watcher, asked, gives_up=raised.hint, names=[server]):
                 self._fail_unanswered(watcher, server, raised, asked, what)
             raised.expect_none()
             return [future.result() for future in asked]
@@ -160,22 +159,19 @@ class Service:
 
 
 def wait_for_all(
-    watcher: Watcher,
-    asked: Sequence[Future],
-    *,
-    gives_up: Callable[[], bool],
-    names: Collection[str] = (),
+    watcher: Watcher, asked: Sequence[Future], *, gives_up: Why, names: Sequence[str] = ()
 ) -> bool:
     """Spin until all are answered, at most ANSWER_SEC of free time for each; return whether so.
 
-    `gives_up()` returns whether no response can come any more. If a callback of the nodes `names`
-    sleeps, WAITED_SEC of wall time is the limit for each.
+    `gives_up()` says why no response can come, or ''; if a callback of `names`, full names of
+    nodes, sleeps, WAITED_SEC of wall time is the limit.
     """
 
     def are_done() -> bool:
         return all(future.done() for future in asked)
 
-    answered, looks, is_over = 0, 0, or_sleeps(are_done, WAITED_SEC, lambda: names)
+    answered = looks = 0
+    is_over = or_sleeps(are_done, WAITED_SEC, lambda: names)
     while looks < round(ANSWER_SEC / LOOK_SEC):
         if watcher.spin_until_free(is_over, free_sec=LOOK_SEC) or gives_up():
             break
