@@ -10,9 +10,12 @@ from my_robot_basics.checks.services.holding_server import MOST_HELD, HoldingSer
 
 @pytest.fixture
 def answered(monkeypatch):
-    """A function: hold for so many seconds, and return the requests that are answered then."""
+    """A function: hold for so many seconds, and return the requests that are answered then.
 
-    def release(*requests, held_sec, reverse=False):
+    They are sent `apart_sec` after each other, whenever the check reads them.
+    """
+
+    def release(*requests, held_sec, apart_sec=0.1, reverse=False):
         now, sent = [100.0], []
         monkeypatch.setattr(holding_server, 'time', SimpleNamespace(monotonic=lambda: now[0]))
         service = SimpleNamespace(send_response=lambda response, _: sent.append(response))
@@ -21,8 +24,9 @@ def answered(monkeypatch):
         server.start()
         server.hold()
         server.published += sorted({*requests})
-        for each in requests:
-            service.send_response(server._take(each, None), None)
+        for number, each in enumerate(requests):
+            header = SimpleNamespace(source_timestamp=round(number * apart_sec * 1e9))
+            service.send_response(server._take(each, None), header)
         assert not sent
         now[0] += held_sec
         server.release(reverse=reverse)
@@ -53,3 +57,10 @@ def test_a_client_that_asks_in_a_loop_is_reported(answered, held_sec):
 def test_a_few_responses_are_all_sent_in_the_order_that_was_asked_for(answered):
     assert answered('a', 'b', 'c', held_sec=1.0) == ['a', 'b', 'c']
     assert answered('a', 'b', 'c', held_sec=1.0, reverse=True) == ['c', 'b', 'a']
+
+
+@pytest.mark.parametrize('held_sec', HELD_SEC)
+def test_a_client_that_asks_many_times_for_each_message_is_reported(answered, held_sec):
+    asked = ['a'] * (MOST_HELD + 1) + ['b'] * (MOST_HELD + 1)
+    with pytest.raises(CheckFailed, match='ask once in the callback, not in a loop or a timer'):
+        answered(*asked, held_sec=held_sec, apart_sec=0.001)
