@@ -172,7 +172,8 @@ class Sentences:
                 return True
             known = text in self.translations or text.strip() in self.translations
             if (place.isupper() and ' ' in text.strip() and not known) or (
-                place.endswith('name') and re.search('[:,] ', text)
+                place.endswith('name')
+                and (': ' in text or (', ' in text and place not in template.quoted))
             ):
                 return True
         return is_cut(template, found) or is_exception_cut(template, found, self._starts)
