@@ -15,10 +15,13 @@ LINE = 'line 21, in send: time.sleep(1.0)'
 
 
 class Sleeper:
-    """A client whose callback begins after `late_sec`, sleeps, and then does what it should."""
+    """A client whose callback begins after `late_sec`, sleeps, and then does what it should.
 
-    def __init__(self, late_sec, sleeps_sec):
-        self.now_sec, self.began_sec = 0.0, late_sec
+    Of the time, `free_part` is free: a check that waits for free time waits longer than that.
+    """
+
+    def __init__(self, late_sec, sleeps_sec, free_part=1.0):
+        self.now_sec, self.began_sec, self.free_part = 0.0, late_sec, free_part
         self.over_sec = late_sec + sleeps_sec
         client = SimpleNamespace(
             service_is_ready=lambda: True, call_async=lambda _: SimpleNamespace(done=self.is_done)
@@ -37,7 +40,7 @@ class Sleeper:
         return done()
 
     def spin_until_free(self, done, *, free_sec):
-        return self.spin_until(done, timeout_sec=free_sec)
+        return self.spin_until(done, timeout_sec=free_sec / self.free_part)
 
     def blocking_line(self, _):
         """As the notebook answers: a callback that is in progress at both of two looks."""
@@ -88,7 +91,7 @@ def test_a_client_that_sleeps_for_half_a_second_is_not(wait, sleeps_sec, late_se
 def test_a_sleep_that_is_allowed_has_the_same_limit_however_busy_the_machine_is(
     monkeypatch, sleeps_sec, is_in_time, free_part
 ):
-    sleeper = Sleeper(0.0, sleeps_sec)
+    sleeper = Sleeper(0.0, sleeps_sec, free_part)
     clock = SimpleNamespace(monotonic=lambda: sleeper.now_sec)
     monkeypatch.setattr(pressure, 'time', clock)
     monkeypatch.setattr(late_answers, 'time', clock)
